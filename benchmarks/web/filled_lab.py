@@ -14,7 +14,7 @@ import numpy as np
 
 from skisnow.campaign import write_reference
 from skisnow.campaign.store import Journals, NewEntry, Store
-from skisnow.campaign.store.replayed import Description, Value, description_text
+from skisnow.campaign.store.replayed import Value, description_text
 
 LOADS_N = (12, 32, 72, 132, 212, 332, 492)
 SITES, SEED = 20, 1
@@ -68,7 +68,7 @@ def _entered(store: Store, readings: int) -> str:
         "gauge_resolution_mm": 0.01,
         "observers": ("Ada",),
     }
-    id_ = journals.begin(description_text(Description(values, (TOOL,), (PLATE,))))
+    id_ = journals.begin(description_text(values, (TOOL,), (PLATE,)))
     for number in range(readings // len(LOADS_N)):
         last = 0
         for position, cells in enumerate(_series(number, rng)):

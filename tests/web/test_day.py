@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from skisnow.campaign.store import Journals, Store
-from skisnow.campaign.store.replayed import Description, description_text
+from skisnow.campaign.store.replayed import description_text
 from skisnow.cli import main
 
 from .browser_types import Download, Locator, Page
@@ -41,7 +41,7 @@ VALUES: dict[str, str | float | tuple[str, ...] | tuple[float, ...]] = {
 
 def create(page: Page, served: Served) -> None:
     """Open what `describe` makes, from the store: as good for later tests, and there at once."""
-    text = description_text(Description(VALUES, [TOOL], [PLATE]))
+    text = description_text(VALUES, [TOOL], [PLATE])
     with Store.open(served.store) as store:
         id_ = Journals(store).begin(text)
     page.goto(f"{served.address}enter/{id_}")

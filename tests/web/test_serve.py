@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from skisnow.campaign.store import Journals, Store, campaign_files, replay_journal
-from skisnow.campaign.store.replayed import Description, description_text
+from skisnow.campaign.store.replayed import description_text
 from skisnow.cli import main
 from tests.present import present
 
@@ -216,7 +216,7 @@ def test_what_was_entered_in_a_lab_on_a_server_outlives_the_lab(
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))  # runs stay on this machine
     address = f"postgresql://snow@127.0.0.1:{group_server.port}/campaigns"
     with Store.open(address) as store:
-        id_ = Journals(store).begin(description_text(Description(VALUES, [TOOL], [PLATE])))
+        id_ = Journals(store).begin(description_text(VALUES, [TOOL], [PLATE]))
     lab = Served(tmp_path / "none.sqlite3", as_command=True, further=("--store", address)).start()
     try:
         page.goto(f"{lab.address}enter/{id_}")

@@ -5,7 +5,7 @@ from typing import Literal
 import pytest
 
 from skisnow.campaign.store import Journals, Store
-from skisnow.campaign.store.replayed import Description, description_text
+from skisnow.campaign.store.replayed import description_text
 
 from .browser_types import Locator, Page, WebSocketRoute
 from .conftest import Served, entered, fill, has_text, ready
@@ -18,7 +18,7 @@ TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm"
 def begun(served: Served) -> str:
     """The address of a campaign in which nothing is entered."""
     plates: list[dict[str, str | float]] = [{"name": "plate", "length_mm": 100.0}]
-    text = description_text(Description({"name": "Quick", "load_steps_N": LOADS}, [TOOL], plates))
+    text = description_text({"name": "Quick", "load_steps_N": LOADS}, [TOOL], plates)
     with Store.open(served.store) as store:
         return f"{served.address}enter/{Journals(store).begin(text)}"
 

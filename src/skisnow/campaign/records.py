@@ -53,8 +53,20 @@ class PenetrationSeries(Shown):
         return Facts(f"{self.experiment} at {self.site}: {tool}, {readings}")
 
 
+class _Readings(Shown):
+    """Readings of experiments, one experiment after the other."""
+
+    __slots__ = ()
+    first: IntArray
+
+    @property
+    def series_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), np.diff(self.first))
+
+
 @dataclass(frozen=True, slots=True, repr=False)
-class UnloadingReadings(Shown):
+class UnloadingReadings(_Readings):
     """Readings during unloading, series after series, each in the order of reading.
 
     Attributes
@@ -81,14 +93,9 @@ class UnloadingReadings(Shown):
         """Number of readings of each experiment."""
         return np.diff(self.first)
 
-    @property
-    def series_of_reading(self) -> IntArray:
-        """Index of the experiment that each reading belongs to."""
-        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), self.count)
-
 
 @dataclass(frozen=True, slots=True, repr=False)
-class PenetrationTests(Shown):
+class PenetrationTests(_Readings):
     """All m penetration experiments of a campaign, n readings under rising loads in the order of the file.
 
     Attributes
@@ -145,11 +152,6 @@ class PenetrationTests(Shown):
         )
         return Facts(f"of {len(self)} experiments, {len(self.load)} readings", rows)
 
-    @property
-    def series_of_reading(self) -> IntArray:
-        """Index of the experiment that each reading belongs to."""
-        return np.repeat(np.arange(len(self), dtype=np.int64), np.diff(self.first))
-
     def series(self, index: int) -> PenetrationSeries:
         """One experiment by its index."""
         part = slice(int(self.first[index]), int(self.first[index + 1]))
@@ -164,7 +166,7 @@ class PenetrationTests(Shown):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class TurningReadings(Shown):
+class TurningReadings(_Readings):
     """Moments over turning angles of the shear experiments, test after test, each in the order of reading.
 
     Attributes
@@ -182,11 +184,6 @@ class TurningReadings(Shown):
     def _repr_facts(self) -> Facts:
         tests = int(np.count_nonzero(np.diff(self.first)))
         return Facts(f"of {tests} experiments, {len(self.moment)} readings, {ends(self.moment, 'N m')}")
-
-    @property
-    def test_of_reading(self) -> IntArray:
-        """Index of the experiment that each reading belongs to."""
-        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), np.diff(self.first))
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -260,7 +260,7 @@ def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplaceme
     m, turning = len(tests), tests.turning
     if turning is None:
         return ShearDisplacement(np.zeros(m, dtype=np.int64), np.full(m, np.nan), np.full((m, 2), np.nan))
-    test = turning.test_of_reading
+    test = turning.series_of_reading
     share = np.divide(turning.moment, tests.moment[test], out=np.zeros(len(test)), where=tests.moment[test] > 0)
     rising = (share >= RISING[0]) & (share <= RISING[1]) & _before_the_largest(turning, tests)
     count = np.bincount(test[rising], minlength=m)
@@ -279,9 +279,9 @@ def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplaceme
 
 def _before_the_largest(turning: TurningReadings, tests: ShearTests) -> BoolArray:
     """Readings before the first one of their test with its largest moment."""
-    largest = turning.moment >= tests.moment[turning.test_of_reading]
+    largest = turning.moment >= tests.moment[turning.series_of_reading]
     reached = np.concatenate(([0], np.cumsum(largest)))
-    return np.asarray(reached[1:] == reached[turning.first[:-1]][turning.test_of_reading])
+    return np.asarray(reached[1:] == reached[turning.first[:-1]][turning.series_of_reading])
 
 
 def _slope(x: FloatArray, y: FloatArray, test: IntArray, count: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -136,7 +136,7 @@ def test_the_row_of_the_largest_moment_is_the_experiment(tmp_path: Path) -> None
     assert tests.turning.first.tolist() == [0, 3, 3, 4]
     assert tests.turning.moment.tolist() == [10.0, 30.0, 25.0, 22.0]
     np.testing.assert_allclose(np.degrees(tests.turning.turning_angle), [0.1, 0.3, 0.5, 1.5])
-    assert tests.turning.test_of_reading.tolist() == [0, 0, 0, 2]
+    assert tests.turning.series_of_reading.tolist() == [0, 0, 0, 2]
     assert "2 experiments, 4 readings" in repr(tests.turning)
     assert campaign.pole_stiffness == pytest.approx(90 / math.radians(1.0))
 

@@ -95,12 +95,17 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
             differs = (column.code != column.code[reference]) & ~column.is_blank & ~key.is_blank
             for row in np.flatnonzero(differs).tolist():
                 yield _mixed_error(table, row, int(reference[row]), name, column[row], column[int(reference[row])])
-    angle = table.numbers["edge_angle_deg"]
-    reference = blocks.first_chosen(~np.isnan(angle))[blocks.of_row]
-    differs = (angle != angle[reference]) & ~np.isnan(angle) & ~key.is_blank
+    yield from check_one_number(table, blocks, "edge_angle_deg")
+
+
+def check_one_number(table: Table, blocks: Blocks, column: str) -> Iterator[Problem]:
+    """Errors for experiments with two numbers in a column."""
+    values, blank = table.numbers[column], table.names[table.form.key].is_blank
+    reference = blocks.first_chosen(~np.isnan(values))[blocks.of_row]
+    differs = (values != values[reference]) & ~np.isnan(values) & ~blank
     for row in np.flatnonzero(differs).tolist():
-        other = float(angle[reference[row]])
-        yield _mixed_error(table, row, int(reference[row]), "edge_angle_deg", f"{angle[row]:.12g}", f"{other:.12g}")
+        first = int(reference[row])
+        yield _mixed_error(table, row, first, column, f"{values[row]:.12g}", f"{values[first]:.12g}")
 
 
 def check_one_site(table: Table) -> Iterator[Problem]:

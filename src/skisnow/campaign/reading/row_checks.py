@@ -12,7 +12,7 @@ from ..._support.messages import Message
 from ..problems import Problem, warning
 from .campaign_file import CAMPAIGN_FILE, CampaignFile
 from .columns import Table, is_unloading
-from .experiments import Blocks, check_one_site, check_series, shear_blocks
+from .experiments import Blocks, check_one_number, check_one_site, check_series, shear_blocks
 from .implausible_units import check_likely_units, check_missing_units
 from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRATION, SHEAR, UNLOADING
 
@@ -45,7 +45,8 @@ def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator
 def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     blocks = shear_blocks(table)
     yield from check_series(table, blocks)
-    yield from check_turning(table, blocks)
+    yield from check_one_number(table, blocks, "depth_mm")
+    yield from check_one_number(table, blocks, "lever_arm_mm")
     yield from check_unit(table)
     if described is not None:
         yield from _unknown_names(table, blocks, "plate", described.plate_names)
@@ -154,22 +155,6 @@ def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
         "Correct the cell; the rows are in the order of reading, and a second loading is another experiment."
     )
     return table.error(row, code, BRANCH, table.names[BRANCH][row], allowed=allowed, action=action)
-
-
-_ONCE: Final = ("depth_mm", "lever_arm_mm")
-
-
-def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Errors for depths and lever arms that change within an experiment."""
-    for name in _ONCE:
-        values = table.numbers[name]
-        first = values[blocks.start][blocks.of_row]
-        for row in np.flatnonzero((values != first) & ~np.isnan(values) & ~np.isnan(first)).tolist():
-            allowed = Message(
-                "one {name} in an experiment; its first row has {first:.12g}", name=name, first=first[row]
-            )
-            action = Message("Correct the cell, or give the rows that were another experiment another name.")
-            yield table.error(row, "mixed_experiment", name, f"{values[row]:.12g}", allowed=allowed, action=action)
 
 
 MOST_LISTED: Final = 1000

@@ -138,7 +138,7 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
     turning = tests.turning
     if turning is None:
         return _csv(header, columns)
-    of_row = turning.test_of_reading.tolist()
+    of_row = turning.series_of_reading.tolist()
     several = [[column[index] for index in of_row] for column in columns]
     several[header.index("moment_Nm")] = _number_texts(turning.moment, 1.0, 2)
     return _csv((*header, "turning_angle_deg"), [*several, _number_texts(turning.turning_angle, DEGREE, 4)])

@@ -10,9 +10,8 @@ from typing import Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, select
 
-from ..._support.messages import Message
 from .journal_entry import DESCRIPTION, JournalEntry, parse_entry
-from .rows import damage_error
+from .rows import entry_damage_error
 from .schema import campaign, journal, journal_entry
 from .stored_tables import cell_of
 
@@ -241,9 +240,7 @@ def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
     query = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)
     for uid, sequence, file, test in connection.execute(query):
         if not isinstance(uid, str):
-            raise damage_error(
-                Message("The entry {number} of the campaign in entry {id}", number=str(sequence), id=journal_id)
-            )
+            raise entry_damage_error(sequence, journal_id)
         index.subject[uid], index.sequence[uid], index.uid[sequence] = (file, test), sequence, uid
     return index
 

@@ -13,7 +13,7 @@ import secrets
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from hashlib import sha256
-from typing import Final
+from typing import Any, Final
 
 from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 from sqlalchemy.exc import DatabaseError
@@ -23,7 +23,7 @@ from ..._support.messages import Message
 from ..._support.user_files import toml_values
 from .engine import database_errors, reading, savepoint, writing
 from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, now, parse_entry, uid_of_file, write_entry
-from .rows import damage_error, require_integer, text_of
+from .rows import damage_error, require_type
 from .schema import campaign, journal, journal_entry
 from .store import Store
 
@@ -160,11 +160,14 @@ class Journals:
             return write_entry(connection, id, entry)
 
 
-def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
+def _journal_head(name: str, id_: Any, begun_at: Any, n_entries: Any, last_at: Any) -> JournalHead:
     try:
-        return JournalHead(text_of(id_), name, text_of(begun_at), require_integer(n_entries), text_of(last_at))
+        require_type(n_entries, int)
+        for text in (id_, begun_at, last_at):
+            require_type(text, str)
     except TypeError as error:
         raise damage_error(Message("The campaign in entry {id}", id=id_)) from error
+    return JournalHead(id_, name, begun_at, n_entries, last_at)
 
 
 def _require_campaign_in_entry(connection: Connection, id_: str) -> None:

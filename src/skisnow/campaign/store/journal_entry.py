@@ -13,10 +13,8 @@ from typing import Any, Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, RowMapping, func, insert, select
 
-from ..._support.errors import StoreError
-from ..._support.messages import Message
 from ..._support.user_files import json_value
-from .rows import TIME, damage_error, require_integer, text_of
+from .rows import TIME, entry_damage_error, require_type
 from .schema import journal_entry
 
 Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
@@ -93,7 +91,7 @@ def parse_entry(row: RowMapping) -> JournalEntry:
     """
     entry = readable_entry(row)
     if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
-        raise _damage_error(row)
+        raise entry_damage_error(row["sequence"], row["journal_id"])
     return entry
 
 
@@ -102,22 +100,15 @@ def readable_entry(row: RowMapping) -> JournalEntry:
     values: dict[str, Any] = {name: row[name] for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     try:
         for name in ("action", "file", "test", "at", "who", "why", "uid"):
-            text_of(values[name])
+            require_type(values[name], str)
         for name in ("sequence", "position", "about"):
             if values[name] is not None or name == "sequence":
-                require_integer(values[name])
-        cells = {text_of(column): text_of(cell) for column, cell in json_value(text_of(row["cells"])).items()}
+                require_type(values[name], int)
+        stored_cells = json_value(require_type(row["cells"], str))
+        cells = {require_type(column, str): require_type(cell, str) for column, cell in stored_cells.items()}
     except (TypeError, ValueError, AttributeError) as error:
-        raise _damage_error(row) from error
+        raise entry_damage_error(row["sequence"], row["journal_id"]) from error
     return JournalEntry(**values, cells=cells)
-
-
-def _damage_error(row: RowMapping) -> StoreError:
-    return damage_error(
-        Message(
-            "The entry {number} of the campaign in entry {id}", number=str(row["sequence"]), id=str(row["journal_id"])
-        )
-    )
 
 
 _SUMMED_COLUMNS: Final = (

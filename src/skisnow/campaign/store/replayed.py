@@ -247,22 +247,17 @@ def _applied_corrections(tests: Sequence[ReplayedTest]) -> Iterator[AppliedCorre
 Value: TypeAlias = "str | float | Sequence[str] | Sequence[float]"
 
 
-@dataclass(frozen=True, slots=True)
-class Description:
-    """Content of campaign.toml: values by key, tools, plates. None and "" are omitted."""
-
-    values: Mapping[str, Value | None] = field(default_factory=dict)
-    tools: Sequence[Mapping[str, Value]] = ()
-    plates: Sequence[Mapping[str, Value]] = ()
-
-
-def description_text(description: Description) -> str:
-    """Text of campaign.toml.
+def description_text(
+    values: Mapping[str, Value | None],
+    tools: Iterable[Mapping[str, Value]] = (),
+    plates: Iterable[Mapping[str, Value]] = (),
+) -> str:
+    """Text of campaign.toml with values by key, tools and plates; values None and "" are omitted.
 
     Raises FieldDataError: the description is invalid; the exception has the problems of reading the text.
     """
-    lines = [f"{key} = {toml_text(value)}" for key, value in description.values.items() if value not in (None, "")]
-    for table, entries in (("tool", description.tools), ("plate", description.plates)):
+    lines = [f"{key} = {toml_text(value)}" for key, value in values.items() if value not in (None, "")]
+    for table, entries in (("tool", tools), ("plate", plates)):
         for entry in entries:
             lines += ["", f"[[{table}]]", *(f"{key} = {toml_text(value)}" for key, value in entry.items())]
     text = "\n".join(lines) + "\n"

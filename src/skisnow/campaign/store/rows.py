@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
@@ -17,6 +17,7 @@ from ..._support.messages import Message
 from .folder import StoredFile, manifest_sha256, read_chunks
 from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content, journal_entry
 
+T = TypeVar("T")
 ID_DIGITS: Final = 12
 _SHORTEST_PREFIX: Final = 4
 _SHOWN_CANDIDATES: Final = 10
@@ -109,6 +110,12 @@ def damage_error(what: str) -> StoreError:
     )
 
 
+def entry_damage_error(number: object, journal_id: object) -> StoreError:
+    """Error for a damaged entry of a journal."""
+    words = Message("The entry {number} of the campaign in entry {id}", number=str(number), id=str(journal_id))
+    return damage_error(words)
+
+
 def require_whole(stored: StoredCampaign) -> None:
     """Check that a campaign's list of files is unchanged since it was added.
 
@@ -129,38 +136,27 @@ def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> Sto
             .join_from(campaign_file, content)
             .where(campaign_file.c.campaign_id == row.id)
         )
-        files = [StoredFile(text_of(file.path), require_integer(file.size), text_of(file.sha256)) for file in rows]
+        files = [
+            StoredFile(require_type(file.path, str), require_type(file.size, int), require_type(file.sha256, str))
+            for file in rows
+        ]
         return StoredCampaign(
-            id=text_of(row.id),
-            name=text_of(row.name),
-            added_at=datetime.strptime(text_of(row.added_at), TIME).replace(tzinfo=UTC),
-            sha256=text_of(row.sha256),
-            n_errors=None if row.n_errors is None else require_integer(row.n_errors),
-            n_warnings=None if row.n_warnings is None else require_integer(row.n_warnings),
+            id=require_type(row.id, str),
+            name=require_type(row.name, str),
+            added_at=datetime.strptime(require_type(row.added_at, str), TIME).replace(tzinfo=UTC),
+            sha256=require_type(row.sha256, str),
+            n_errors=None if row.n_errors is None else require_type(row.n_errors, int),
+            n_warnings=None if row.n_warnings is None else require_type(row.n_warnings, int),
             files=tuple(sorted(files, key=lambda file: file.path)),
         )
     except (TypeError, ValueError) as error:
         raise damage_error(Message("The campaign {id}", id=row.id)) from error
 
 
-def text_of(value: object) -> str:
-    """The value, which must be text; SQLite can return bytes or a number for a damaged row."""
-    if not isinstance(value, str):
-        raise TypeError(f"{value!r} is no text")
-    return value
-
-
-def require_integer(value: object) -> int:
-    """The value, which must be an integer."""
-    if not isinstance(value, int):
-        raise TypeError(f"{value!r} is not a whole number")
-    return value
-
-
-def require_bytes(value: object) -> bytes:
-    """The value, which must be bytes (`bytes` would convert a number to zeros)."""
-    if not isinstance(value, bytes):
-        raise TypeError(f"{value!r} is not bytes")
+def require_type(value: object, kind: type[T]) -> T:
+    """The value, which must have the type; SQLite can return bytes or a number for a text of a damaged row."""
+    if not isinstance(value, kind):
+        raise TypeError(f"{value!r} is not of the type {kind.__name__}")
     return value
 
 
@@ -169,7 +165,7 @@ def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
     pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
     try:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
-            yield require_bytes(piece)
+            yield require_type(piece, bytes)
     except TypeError as error:
         raise damage_error(Message("The content {sha256}", sha256=sha256)) from error
 

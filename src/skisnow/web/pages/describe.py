@@ -14,7 +14,7 @@ from ...campaign.problems import Problem
 from ...campaign.reading.campaign_file import SHAPES
 from ...campaign.store import Journals, NewEntry, OvertakenError
 from ...campaign.store.journal_entry import DESCRIPTION
-from ...campaign.store.replayed import Description, description_text
+from ...campaign.store.replayed import description_text
 from ..edit_session import EditSession
 from ..elements import StatusLine, TypedField, choice, field
 from ..layout import heading, page_frame, sentence
@@ -166,7 +166,7 @@ class DescriptionForm:
         values |= {
             key: typed_number(NUMBERS[key], number.value or "") for key, number in self._numbers.items() if number.value
         }
-        text = description_text(Description(values, self._tools.values(), self._plates.values()))
+        text = description_text(values, self._tools.values(), self._plates.values())
         codes = self._given.get("screening", {}).get("exclude")
         return text + ("" if codes is None else f"\n[screening]\nexclude = {codes!r}\n")
 
