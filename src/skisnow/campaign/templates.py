@@ -160,7 +160,7 @@ def workbook_bytes(name: str) -> bytes:
     )
     _fill_sheet(book.create_sheet(PLATES), ("name", "length_mm"), [(PLATE, PLATE_LENGTH_MM)])
     for template in TEMPLATES:
-        sheet = book.create_sheet(template.form.file.removesuffix(".csv"))
+        sheet = book.create_sheet(template.form.name)
         _fill_sheet(
             sheet,
             tuple(template.example),

@@ -53,13 +53,12 @@ def number_columns(form: TableForm) -> list[str]:
 
 def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes: Sequence[Note]) -> list[ColumnChoice]:
     """Columns of a section; open questions and errors are added to the dialogue."""
-    table = form.file.removesuffix(".csv")
     if section.sheet.hidden_columns & set(section.columns) and HIDDEN not in dialogue.answers.cells:
         dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
     stated = []
     for heading in section.headings:
-        answer = dialogue.answers.of_heading("column", table, heading)
+        answer = dialogue.answers.of_heading("column", form.name, heading)
         stated.append(answer if answer in form.known or answer == NONE else stated_column(form, heading))
         if answer and answer != NONE and answer not in form.known:
             allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
@@ -72,7 +71,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
         if column in number_columns(form):
             unit = _choose_unit(section, form, heading, column, place, dialogue, notes)
         elif column in form.further and unit_of_column(column):
-            units = _statements(section, heading, column, place, dialogue, table, notes)
+            units = _statements(section, heading, column, place, dialogue, form, notes)
             column = column if units == {folded_unit(column)} else heading  # noqa: PLW2901
         choices.append(ColumnChoice(place, heading, "" if column == NONE else column or heading, unit))
     return choices
@@ -80,14 +79,13 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
 
 def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) -> Iterator[Question | Problem]:
     """Questions for required columns that no heading states, and for headings that state the same column."""
-    table = form.file.removesuffix(".csv")
     times = Counter(column for column in stated if column and column != NONE)
     for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
         if section.headings.index(heading) < section.columns.index(place) and column != NONE:
             excluded = f"{section.sheet.name}!{column_letters(place)}"
             yield ask("ignore", excluded, section.key, value=heading)
         elif times[column] > 1:
-            key = f"{table}.{heading}"
+            key = f"{form.name}.{heading}"
             yield ask("column", key, section.key, value=heading, choices=(column, NONE), proposed=column)
     missing = [name for name in form.required if name not in times and name not in FROM_NOTES]
     free = [heading for heading, column in zip(section.headings, stated, strict=True) if not column]
@@ -96,7 +94,7 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
     for heading in free if missing else ():
         proposed = likely.get(heading, NONE)
         choices = (*missing, *(name for name in form.known if name not in missing), NONE)
-        yield ask("column", f"{table}.{heading}", section.key, value=heading, choices=choices, proposed=proposed)
+        yield ask("column", f"{form.name}.{heading}", section.key, value=heading, choices=choices, proposed=proposed)
     if missing and not free:
         allowed = Message("the columns {required}", required=list(form.required))
         action = Message(
@@ -106,14 +104,14 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
 
 
 def _statements(
-    section: Section, heading: str, column: str, place: int, dialogue: Dialogue, table: str, notes: Sequence[Note]
+    section: Section, heading: str, column: str, place: int, dialogue: Dialogue, form: TableForm, notes: Sequence[Note]
 ) -> set[str]:
     """Units that answer, heading, row of units and notes state for a column."""
     below = section.units[section.columns.index(place)] if section.units else ""
     named = folded_unit(column) if heading == column else named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
     return {
-        *filter(None, (known_unit(dialogue.answers.of_heading("unit", table, heading)), named, known_unit(below))),
+        *filter(None, (known_unit(dialogue.answers.of_heading("unit", form.name, heading)), named, known_unit(below))),
         *of_notes,
     }
 
@@ -121,15 +119,14 @@ def _statements(
 def _choose_unit(
     section: Section, form: TableForm, heading: str, column: str, place: int, dialogue: Dialogue, notes: Sequence[Note]
 ) -> UnitConversion | None:
-    table = form.file.removesuffix(".csv")
-    units = _statements(section, heading, column, place, dialogue, table, notes)
+    units = _statements(section, heading, column, place, dialogue, form, notes)
     sizes = {conversion(unit, column) for unit in units}
     below = section.units[section.columns.index(place)] if section.units else ""
     is_unknown = not known_unit(below) and below.casefold() not in NO_UNIT and below != heading
     if (
         len(sizes) == 1
         and None not in sizes
-        and (not is_unknown or dialogue.answers.of_heading("unit", table, heading))
+        and (not is_unknown or dialogue.answers.of_heading("unit", form.name, heading))
     ):
         return sizes.pop()
     if sizes:
@@ -139,7 +136,7 @@ def _choose_unit(
         dialogue.refuse("other_unit", section.key, column=heading, value=value, allowed=allowed, action=action)
     else:
         choices = tuple(units_for(column).split(", "))
-        dialogue.ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices)
+        dialogue.ask("unit", f"{form.name}.{heading}", section.key, value=below or heading, choices=choices)
     return None
 
 

@@ -262,22 +262,21 @@ def _renamed(
 
 def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:
     """Text of each CSV file, merged from all tables of its kind."""
-    by_form: dict[str, list[dict[str, str]]] = {}
+    by_form: dict[TableForm, list[dict[str, str]]] = {}
     for table in tables:
         if table.rows:
-            by_form.setdefault(table.form.file, []).extend(row.cells for row in table.rows)
-    return {file: table_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
+            by_form.setdefault(table.form, []).extend(row.cells for row in table.rows)
+    return {form.file: table_text(form, rows) for form, rows in by_form.items()}
 
 
 def _template(answers: Answers, tables: Sequence[ImportedTable]) -> Answers:
     """Answers with the columns and units of the tables, for an import of a like file."""
     for table in tables:
-        kind = table.form.file.removesuffix(".csv")
         for choice in table.columns:
             if choice.column != choice.heading and choice.column:
-                answers = answers.with_("column", f"{kind}.{choice.heading}", choice.column)
+                answers = answers.with_("column", f"{table.form.name}.{choice.heading}", choice.column)
             if choice.unit is not None:
-                answers = answers.with_("unit", f"{kind}.{choice.heading}", choice.unit.name)
+                answers = answers.with_("unit", f"{table.form.name}.{choice.heading}", choice.unit.name)
     return answers
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
 
-from ..._support.csv_text import UnreadableTextError, decode
+from ..._support.csv_text import decode
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
@@ -107,20 +107,16 @@ def campaign_of_cells(
     corrections: these corrections.
     Raises FieldDataError: as `read_campaign`.
     """
-    files = RawFiles(FilesInMemory({}))
-    described = read_campaign_file(description, files.problems)
-    if described is not None:
-        files.headings = described.headings
-    tables: dict[str, Table] = {}
+    raw = _RawCampaign(FilesInMemory({}), applied=corrections)
+    raw.described = read_campaign_file(description, raw.problems)
+    if raw.described is not None:
+        raw.headings = raw.described.headings
     for form in TABLES:
-        table = table_of_cells(form, cells[form.file], files) if form.file in cells else None
-        if table is not None:
-            tables[form.file] = table
-            files.problems.extend(check_rows(table, described))
-    if not {form.file for form in MEASUREMENTS} & set(cells):
-        files.problems.append(_missing_measurements())
-    problems = _sort_problems(files.problems)
-    return _require_valid(_Contents(Path("campaign"), described, tables, {}, problems, corrections))
+        if form.file in cells:
+            raw.add_table(table_of_cells(form, cells[form.file], raw))
+        else:
+            raw.absent.add(form.file)
+    return _require_valid(raw)
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
@@ -144,32 +140,40 @@ def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
     ----------
     The page docs/files/campaign.md.
     """
-    return _read_folder(Path(folder), None).problems
+    return _read_folder(Path(folder), None).sorted_problems()
 
 
-def _require_valid(contents: _Contents) -> Campaign:
-    if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
-        raise FieldDataError(contents.problems)
-    return _build_campaign(contents, contents.described)
+@dataclass(slots=True)
+class _RawCampaign(RawFiles):
+    """Contents of a campaign's files before conversion to records."""
 
-
-@dataclass(frozen=True, slots=True)
-class _Contents:
-    """Contents of a campaign's files before conversion to records, with all problems."""
-
-    folder: Path
-    described: CampaignFile | None
-    tables: Mapping[str, Table]
-    hashes: Mapping[str, str]
-    problems: tuple[Problem, ...]
-    corrections: tuple[AppliedCorrection, ...] = ()
+    described: CampaignFile | None = None
+    tables: dict[str, Table] = field(default_factory=dict)
+    applied: Iterable[AppliedCorrection] = ()
     unread: tuple[str, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
     recordings: Mapping[str, bytes] = field(default_factory=dict)
     weather: CampaignWeather | None = None
 
+    def add_table(self, table: Table | None) -> None:
+        """Add a table that can be read, and the problems of its rows."""
+        if table is not None:
+            self.tables[table.form.file] = table
+            self.problems.extend(check_rows(table, self.described))
 
-def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
+    def sorted_problems(self) -> tuple[Problem, ...]:
+        """Problems in the order of the files and rows, with the names of sheets."""
+        problems = self.problems
+        if {form.file for form in TABLES} <= self.absent:
+            allowed = Message("at least one of {files}", files=[form.file for form in TABLES])
+            action = Message("Put the tables of the experiments into the folder, under these names.")
+            problems = [*problems, error("unreadable_file", PENETRATION.file, allowed=allowed, action=action)]
+        place = {name: index for index, name in enumerate(CAMPAIGN_FILES)}
+        problems = sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0))
+        return tuple(with_sheet_name(problem, self.places) for problem in problems)
+
+
+def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _RawCampaign:
     if folder.is_file() and is_workbook(folder.name):
         return _read_all(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
@@ -183,50 +187,28 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
         nowhere = error(
             "unreadable_file", str(folder), value=value, allowed=Message("a folder that exists"), action=action
         )
-        return _Contents(folder, None, {}, {}, (nowhere,))
+        return _RawCampaign(CampaignFiles(folder), [nowhere])
     return _read_all(CampaignFiles(folder), progress)
 
 
-def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _RawCampaign:
     campaign = unfold_workbooks(campaign_files)
-    files = RawFiles(campaign, problems=campaign.problems)
-    described = read_description(files)
-    tables: dict[str, Table] = {}
+    raw = _RawCampaign(campaign, campaign.problems, places=campaign.places)
+    raw.described = read_description(raw)
     for form in TABLES:
-        table = read_table(form, files, progress)
-        if table is not None:
-            tables[form.file] = table
-            files.problems.extend(check_rows(table, described))
-    if not any(problem.severity == "error" for problem in files.problems):
-        files.problems.extend(_units_without_heading(files.headings, tables))
-    recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
-    weather = None if described is None else campaign_weather(described.weather, files)
+        raw.add_table(read_table(form, raw, progress))
+    if not any(problem.severity == "error" for problem in raw.problems):
+        raw.problems.extend(_units_without_heading(raw.headings, raw.tables))
+    raw.recordings = recording_contents(raw.tables.get(SNOW_MICRO_PEN.file), raw)
+    raw.weather = None if raw.described is None else campaign_weather(raw.described.weather, raw)
     names = campaign.names()
-    files.problems.extend(_misnamed_files(names, files.absent))
-    if {form.file for form in MEASUREMENTS} <= files.absent:
-        files.problems.append(_missing_measurements())
-    hashes = {name: digest for name, digest in files.hashes.items() if name not in campaign.of_sheets}
-    applied = sorted(
-        (correction for rows in files.corrections.values() for row in rows.values() for correction in row),
-        key=lambda correction: correction.line,
-    )
-    return _Contents(
-        campaign.folder,
-        described,
-        tables,
-        hashes | campaign.hashes,
-        tuple(with_sheet_name(problem, campaign.places) for problem in _sort_problems(files.problems)),
-        tuple(correction.applied() for correction in applied),
-        (*(name for name in _unread_files(names) if name not in files.hashes), *campaign.unread),
-        campaign.places,
-        recordings,
-        weather,
-    )
-
-
-def _sort_problems(problems: list[Problem]) -> tuple[Problem, ...]:
-    place = {name: index for index, name in enumerate(CAMPAIGN_FILES)}
-    return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
+    raw.problems.extend(_misnamed_files(names, raw.absent))
+    raw.unread = (*(name for name in _unread_files(names) if name not in raw.hashes), *campaign.unread)
+    hashes = {name: sha256 for name, sha256 in raw.hashes.items() if name not in campaign.of_sheets}
+    raw.hashes = hashes | campaign.hashes
+    corrections = (correction for rows in raw.corrections.values() for row in rows.values() for correction in row)
+    raw.applied = [correction.applied() for correction in sorted(corrections, key=lambda correction: correction.line)]
+    return raw
 
 
 def _unread_files(there: Mapping[str, bool]) -> tuple[str, ...]:
@@ -268,19 +250,6 @@ def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> list[Problem
     ]
 
 
-MEASUREMENTS: Final = (PENETRATION, SHEAR, SNOW_MICRO_PEN, DENSITY, DROP_CONE)
-"""Tables of which a campaign needs one: recordings or samples of a pit alone are a campaign."""
-
-
-def _missing_measurements() -> Problem:
-    return error(
-        "unreadable_file",
-        PENETRATION.file,
-        allowed=Message("at least one of {files}", files=[form.file for form in MEASUREMENTS]),
-        action=Message("Put the tables of the experiments into the folder, under these names."),
-    )
-
-
 def read_description(files: RawFiles) -> CampaignFile | None:
     """Read campaign.toml and corrections.csv; the files get their headings, corrections and problems."""
     described = _read_campaign_toml(files)
@@ -293,7 +262,7 @@ def read_description(files: RawFiles) -> CampaignFile | None:
 
 
 def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
-    data = files.read(CAMPAIGN_FILE)
+    decoded = files.decoded(CAMPAIGN_FILE, decode)
     if CAMPAIGN_FILE in files.absent:
         action = Message(
             "`skisnow new campaign` writes one into this folder; `skisnow import FILE --out DIR` makes a campaign of a "
@@ -301,18 +270,11 @@ def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
         )
         allowed = Message("a file of this name in the folder")
         files.problems.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
-    if data is None:
-        return None
-    try:
-        decoded = decode(data)
-    except UnreadableTextError as failure:
-        files.report_unreadable(CAMPAIGN_FILE, failure)
+    if decoded is None:
         return None
     if not decoded.text.strip():
-        action = Message("Describe the tools and plates that the tables name.")
-        files.problems.append(
-            error("empty_file", CAMPAIGN_FILE, value="nothing", allowed=Message("keys and values"), action=action)
-        )
+        action, allowed = Message("Describe the tools and plates that the tables name."), Message("keys and values")
+        files.problems.append(error("empty_file", CAMPAIGN_FILE, value="nothing", allowed=allowed, action=action))
         return None
     files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
     return read_campaign_file(decoded.text, files.problems)
@@ -324,25 +286,28 @@ _SAME: Final = {field.name for field in fields(CampaignFile)} & {field.name for 
 """Fields of a campaign that campaign.toml states as they are."""
 
 
-def _build_campaign(contents: _Contents, described: CampaignFile) -> Campaign:
-    tables = contents.tables
+def _require_valid(raw: _RawCampaign) -> Campaign:
+    """Convert a campaign to records.
+
+    Raises FieldDataError: it has errors.
+    """
+    problems, described, tables = raw.sorted_problems(), raw.described, raw.tables
+    if described is None or any(problem.severity == "error" for problem in problems):
+        raise FieldDataError(problems)
+    folder, recorded, settings = raw.files.folder, tables.get(SNOW_MICRO_PEN.file), described.snow_micro_pen
     return Campaign(
-        name=described.name or contents.folder.resolve().name,
-        folder=contents.folder,
+        name=described.name or folder.resolve().name,
+        folder=folder,
         **{name: getattr(described, name) for name in _SAME},
         penetration=penetration_tests(tables[PENETRATION.file]) if PENETRATION.file in tables else None,
         shear=shear_tests(tables[SHEAR.file]) if SHEAR.file in tables else None,
         density=density_samples(tables[DENSITY.file]) if DENSITY.file in tables else None,
         drop_cone=drop_cone_tests(tables[DROP_CONE.file]) if DROP_CONE.file in tables else None,
-        problems=contents.problems,
-        file_hashes=contents.hashes,
-        corrections=contents.corrections,
-        unread_files=contents.unread,
-        places=contents.places,
-        snow_micro_pen=snow_micro_pen_recordings(
-            tables[SNOW_MICRO_PEN.file], contents.recordings, described.snow_micro_pen
-        )
-        if SNOW_MICRO_PEN.file in tables
-        else None,
-        weather=contents.weather,
+        problems=problems,
+        file_hashes=raw.hashes,
+        corrections=tuple(raw.applied),
+        unread_files=raw.unread,
+        places=raw.places,
+        snow_micro_pen=snow_micro_pen_recordings(recorded, raw.recordings, settings) if recorded is not None else None,
+        weather=raw.weather,
     )

@@ -7,7 +7,7 @@ import stat
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 from ..._support.csv_text import CsvText, UnreadableTextError, inspect_csv
 from ..._support.errors import FieldDataError
@@ -23,6 +23,8 @@ from .corrections import RowCorrections
 from .headings import Headings
 from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN, TableForm
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,16 +105,21 @@ class RawFiles:
 
     def csv_text(self, form: TableForm) -> CsvText | None:
         """Text of a table, before it is split into records; None without a readable file."""
-        data = self.read(form.file)
+        text = self.decoded(form.file, inspect_csv)
+        if text is not None:
+            self.report_encoding(form.file, text.foreign_encoding)
+        return text
+
+    def decoded(self, name: str, decoder: Callable[[bytes], T]) -> T | None:
+        """Result of decoding the bytes of a file; None without a readable file."""
+        data = self.read(name)
         if data is None:
             return None
         try:
-            text = inspect_csv(data)
+            return decoder(data)
         except UnreadableTextError as failure:
-            self.report_unreadable(form.file, failure)
+            self.report_unreadable(name, failure)
             return None
-        self.report_encoding(form.file, text.foreign_encoding)
-        return text
 
     def _report_unreadable(self, name: str, what: str) -> None:
         action = Message("Make the file readable, or remove it from the campaign.")

@@ -106,13 +106,12 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
     """Error of a table with foreign headings: proposes the lines for campaign.toml."""
     meant = columns_by_synonym(form, header.columns)
     left = [name for name in form.required if name not in meant.values()]
-    table = form.file.removesuffix(".csv")
     pairs = ", ".join(
         f"{json.dumps(heading, ensure_ascii=False)} = {json.dumps(name)}" for heading, name in meant.items()
     )
     actions = []
     if meant:
-        line = f"columns.{table} = {{{pairs}}}"
+        line = f"columns.{form.name} = {{{pairs}}}"
         actions.append(Message("Put this at the top of campaign.toml if it is right: {line}.", line=line))
     other = [
         Message("{heading} names {unit}", heading=heading, unit=unit)

@@ -16,7 +16,7 @@ from .toml_values import TomlValues
 
 KEY: Final = "columns"
 UNITS_KEY: Final = "units"
-FORMS: Final = {form.file.removesuffix(".csv"): form for form in (*TABLES, CORRECTIONS)}
+FORMS: Final = {form.name: form for form in (*TABLES, CORRECTIONS)}
 """Tables by the names that ``[columns.NAME]`` and sheets of a workbook have."""
 
 

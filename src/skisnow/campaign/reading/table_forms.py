@@ -47,6 +47,11 @@ class TableForm:
     may_be_empty: bool = False
 
     @property
+    def name(self) -> str:
+        """Name of the table, such as of a sheet: that of the file without its ending."""
+        return self.file.removesuffix(".csv")
+
+    @property
     def required(self) -> tuple[str, ...]:
         """Required columns."""
         return self.names + tuple(column.name for column in self.numbers if column.needed) + self.texts

@@ -17,14 +17,13 @@ from ..._support.user_files.workbook import Rows
 from ..problems import Problem, error, warning
 from .campaign_file import CAMPAIGN_KEYS
 from .campaign_files import CampaignFiles
-from .headings import columns_by_synonym
-from .table_forms import CORRECTIONS, TABLES
+from .headings import FORMS, columns_by_synonym
+from .table_forms import TABLES
 
 ENDINGS: Final = (".xlsx", ".xlsm")
 DESCRIPTION: Final = "campaign.toml"
 _LIKELY: Final = 0.6
 """Smallest share of required columns with which a sheet is proposed as a table."""
-_FILES: Final = {form.file.removesuffix(".csv"): form.file for form in (*TABLES, CORRECTIONS)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,14 +74,13 @@ def unfold_workbooks(files: CampaignFiles) -> UnfoldedFiles:
             for form in TABLES
         }
         form = max(shares, key=lambda form: shares[form])
-        meant = form.file.removesuffix(".csv") if shares[form] >= _LIKELY else None
-        if meant and _FILES[meant] not in {*names, *workbooks.of_sheets}:
-            workbooks.problems.append(_misnamed_sheet(place, meant))
+        if shares[form] >= _LIKELY and form.file not in {*names, *workbooks.of_sheets}:
+            workbooks.problems.append(_misnamed_sheet(place, form.name))
     return workbooks
 
 
 def _misnamed_sheet(place: str, table: str) -> Problem:
-    names = ", ".join(("campaign", "tools", "plates", "columns", *_FILES))
+    names = ", ".join(("campaign", "tools", "plates", "columns", *FORMS))
     action = Message("It looks like {table}: call the sheet so if it is. Otherwise no action is needed.", table=table)
     allowed = Message("sheets called {names}", names=names)
     return warning("unread_sheet", place, value=place.rpartition(", sheet ")[2], allowed=allowed, action=action)
@@ -124,16 +122,16 @@ def _assign_sheets(workbooks: UnfoldedFiles, workbook: str, sheets: Mapping[str,
         place = f"{workbook}, sheet {title}"
         if kind in DESCRIBING:
             describing[kind] = rows
-        elif kind not in _FILES:
+        elif kind not in FORMS:
             workbooks.unread[place] = rows
-        elif _FILES[kind] in workbooks.of_sheets:
+        elif FORMS[kind].file in workbooks.of_sheets:
             action = Message("Keep one of the sheets; rename or remove the other.")
             workbooks.problems.append(
                 error("unreadable_file", place, value=title, allowed=Message("one table of a kind"), action=action)
             )
         else:
-            workbooks.of_sheets[_FILES[kind]] = _csv(rows)
-            workbooks.places[_FILES[kind]] = place
+            workbooks.of_sheets[FORMS[kind].file] = _csv(rows)
+            workbooks.places[FORMS[kind].file] = place
     if describing:
         workbooks.of_sheets[DESCRIPTION] = description_text(describing).encode()
         workbooks.places[DESCRIPTION] = f"{workbook}, sheets {', '.join(describing)}"

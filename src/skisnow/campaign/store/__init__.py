@@ -11,7 +11,6 @@ from .conflict import Conflict, Side
 from .export import (
     ExportedCampaign,
     FoundCampaign,
-    add_corrections,
     corrected_files,
     entered_files,
     export_corrected,
@@ -56,7 +55,6 @@ __all__ = [
     "StoredFile",
     "StoredTable",
     "SyncResult",
-    "add_corrections",
     "attachments_of",
     "campaign_files",
     "campaign_in_memory",

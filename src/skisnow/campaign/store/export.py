@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -46,59 +46,32 @@ def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress
     Raises StoreError: as `Store.export`; or the corrections.csv of the campaign cannot be read.
     """
     entries = Journals(store).corrections(store.show(id_).id)
-    written: list[int] = []
-
-    def complete(filled: Path) -> None:
-        written.append(add_corrections(filled, entries))
-        _add_attachments(filled, entries)
-
-    stored = store.export(id_, folder, progress=progress, complete=complete)
-    return ExportedCampaign(stored, sum(written))
+    stored = store.export(id_, folder, progress=progress, complete=lambda filled: _add_later_files(filled, entries))
+    return ExportedCampaign(stored, len(list(_corrections(entries))))
 
 
-def _add_attachments(folder: Path, entries: Iterable[JournalEntry]) -> None:
-    place = folder / ATTACHMENTS
-    before = place.read_bytes() if place.is_file() else b""
-    for name, data in attachment_files(replay_journal(entries), before):
-        (folder / name).parent.mkdir(exist_ok=True)
-        write_file(folder / name, data)
-
-
-def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
-    """Write corrections.csv in a campaign's folder if there are corrections; return the number of corrected cells.
-
-    entries: entries about the campaign, oldest first.
-    before: original corrections.csv of the campaign (default: that in the folder).
-    Raises StoreError: that file cannot be read.
-    """
-    place = folder / CORRECTIONS.file
-    rows = list(_corrections(entries))
-    if before is None:
-        before = place.read_bytes() if place.is_file() else b""
-    if rows:
-        write_file(place, _combine_corrections(before, rows))
-    elif before:
-        write_file(place, before)
-    else:
-        place.unlink(missing_ok=True)
-    return len(rows)
+def _add_later_files(folder: Path, entries: Sequence[JournalEntry]) -> None:
+    """Add corrections, photos and positions to the files of an exported campaign."""
+    places = {name: folder / name for name in (CORRECTIONS.file, ATTACHMENTS)}
+    before = {name: place.read_bytes() for name, place in places.items() if place.is_file()}
+    after = corrected_files(before, entries)
+    after |= attachment_files(replay_journal(entries), before.get(ATTACHMENTS, b""))
+    for name, data in after.items():
+        if data != before.get(name):
+            (folder / name).parent.mkdir(exist_ok=True)
+            write_file(folder / name, data)
 
 
 def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry]) -> dict[str, bytes]:
-    """Files of a campaign with the corrections.csv that `add_corrections` writes.
+    """Files of a campaign, with the later corrections appended to corrections.csv.
 
     Raises StoreError: the corrections.csv of the campaign cannot be read.
     """
-    rows = list(_corrections(entries))
-    if not rows:
+    cells = [dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in _corrections(entries)]
+    if not cells:
         return dict(files)
-    return {**files, CORRECTIONS.file: _combine_corrections(files.get(CORRECTIONS.file, b""), rows).encode("utf-8")}
-
-
-def _combine_corrections(before: bytes, rows: list[AppliedCorrection]) -> str:
-    """Text of corrections.csv: the original rows with all their columns, then the new ones."""
-    cells = (dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in rows)
-    return with_rows(before, CORRECTIONS.file, COLUMNS, cells)
+    text = with_rows(files.get(CORRECTIONS.file, b""), CORRECTIONS.file, COLUMNS, cells)
+    return {**files, CORRECTIONS.file: text.encode("utf-8")}
 
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:

@@ -167,11 +167,11 @@ def guarded_csv(rows: Iterable[Sequence[str]]) -> str:
 _TIME = "time"
 
 
-def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> dict[str, str]:
-    """Text of each file of the campaign's folder, by name; `of`: tests to include (default: all)."""
+def campaign_files(campaign: ReplayedCampaign) -> dict[str, str]:
+    """Text of each file of the campaign's folder, by name."""
     files = {DESCRIPTION: campaign.description}
     corrections: list[AppliedCorrection] = []
-    for form, tests in _tests_by_table(campaign, of):
+    for form, tests in _tests_by_table(campaign.tests.values()):
         columns = _table_columns(form, tests)
         rows = [_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
         files[form.file] = guarded_csv([columns, *rows])
@@ -189,7 +189,7 @@ def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
     """
     tables: dict[str, Cells] = {}
     corrections: list[AppliedCorrection] = []
-    for form, tests in _tests_by_table(campaign, of):
+    for form, tests in _tests_by_table(campaign.tests.values() if of is None else of):
         columns = _table_columns(form, tests)
         if STATUS not in columns and any(test.cancelling for test in tests):
             columns.append(STATUS)
@@ -199,15 +199,13 @@ def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
     return campaign_of_cells(campaign.description, tables, tuple(corrections))
 
 
-def _tests_by_table(
-    campaign: ReplayedCampaign, of: Iterable[ReplayedTest] | None
-) -> Iterator[tuple[TableForm, list[ReplayedTest]]]:
+def _tests_by_table(tests: Iterable[ReplayedTest]) -> Iterator[tuple[TableForm, list[ReplayedTest]]]:
     """Tests of each table that has rows."""
-    chosen = list(campaign.tests.values() if of is None else of)
-    for form in TABLES:
-        tests = [test for test in chosen if test.file == form.file and test.rows]
-        if tests:
-            yield form, tests
+    by_file: dict[str, list[ReplayedTest]] = {}
+    for test in tests:
+        if test.rows:
+            by_file.setdefault(test.file, []).append(test)
+    yield from ((form, by_file[form.file]) for form in TABLES if form.file in by_file)
 
 
 def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]:

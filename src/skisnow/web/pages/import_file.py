@@ -153,7 +153,7 @@ class _ImportPage:
 
     def _table(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
         """Choices of a table: its kind, a column for each heading, and the units that are stated."""
-        kind = table.form.file.removesuffix(".csv")
+        kind = table.form.name
         heading(Message("{place}: {table}", place=table.section.key, table=said(TABLES[table.form.file])), 3)
         options = {name: label(name) for name in table.form.known} | {NONE: LEFT_OUT}
         with ui.element("div").classes("inputs"):
