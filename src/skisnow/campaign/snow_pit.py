@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -171,7 +172,7 @@ def read_density_layers(path: Path) -> DensityLayers:
         allowed, action = Message("a file of this name"), Message("Check the file's name and folder.")
         files.problems.append(error("unreadable_file", path.name, allowed=allowed, action=action))
     if table is not None and not table.absent:
-        files.problems.extend(_layers_upside_down(path.name, table))
+        files.problems.extend(_layers_upside_down(table))
     errors = [problem for problem in files.problems if problem.severity == "error"]
     if errors or table is None:
         raise FieldDataError(errors)
@@ -202,18 +203,9 @@ def _layers_form(file: str) -> TableForm:
     )
 
 
-def _layers_upside_down(file: str, table: Table) -> list[Problem]:
+def _layers_upside_down(table: Table) -> Iterator[Problem]:
     top, bottom = table.numbers["TOP"], table.numbers["BOTTOM"]
-    return [
-        error(
-            "out_of_range",
-            file,
-            row=int(table.row[index]),
-            column="TOP",
-            experiment=table.names["ID"][index],
-            value=f"{top[index]:g}",
-            allowed=Message("a height above the layer's BOTTOM, {bottom:g} cm", bottom=bottom[index]),
-            action=Message("Heights count upwards; exchange the two if the file counts from the surface down."),
-        )
-        for index in np.flatnonzero(top <= bottom).tolist()
-    ]
+    for row in np.flatnonzero(top <= bottom).tolist():
+        allowed = Message("a height above the layer's BOTTOM, {bottom:g} cm", bottom=bottom[row])
+        action = Message("Heights count upwards; exchange the two if the file counts from the surface down.")
+        yield table.error(row, "out_of_range", "TOP", f"{top[row]:g}", allowed, action)

@@ -11,6 +11,7 @@ from typing import Final
 from ..._support.messages import Message
 from ..problems import Problem, error
 from ..reading.columns import iso_moment
+from ..reading.header import NO_UNIT
 from ..reading.headings import (
     SYNONYMS,
     UnitConversion,
@@ -26,7 +27,7 @@ from ..reading.headings import (
 )
 from ..reading.table_forms import TableForm
 from .answers import NONE, Dialogue, Question, ask
-from .sections import NO_UNIT, Section
+from .sections import Section
 from .sheets import EXCLUDED, FROM_NOTES, HIDDEN, column_letters
 
 

@@ -21,7 +21,7 @@ from .columns import Note, choose_columns, is_about_numbers, stated_days, stated
 from .folder import ToolText, campaign_files, described_tools, description, table_text
 from .rows import ImportedTable, StoredRow, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
-from .sheets import HIDDEN, KINDS, Ignored, Sheet, read_sheets
+from .sheets import HIDDEN, KINDS, Sheet, read_sheets
 
 BY_SHEET: Final = "by-sheet"
 SOFTEST: Final = 1e-4
@@ -56,25 +56,25 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     answers: answers to questions of an earlier proposal, or of a template.
     Raises ContentError or ParameterError: the file cannot be read.
     """
-    ignored = Ignored(frozenset(answers.ignore), answers.cells.get(HIDDEN) == "no")
-    sheets = read_sheets(name, data)
-    sections = {sheet.name: find_sections(sheet, answers.table, ignored) for sheet in sheets}
+    ignored, hides = frozenset(answers.ignore), answers.cells.get(HIDDEN) == "no"
+    sheets = [replace(sheet, ignored=ignored, hides_columns=hides) for sheet in read_sheets(name, data)]
+    sections = {sheet.name: find_sections(sheet, answers.table) for sheet in sheets}
     dialogue = Dialogue(answers)
     kinds = [(section, _choose_table_form(section, dialogue)) for on_sheet in sections.values() for section in on_sheet]
     forms = [(section, form) for section, form in kinds if form is not None]
-    notes = _notes(sheets, [section for section, _ in kinds], ignored)
+    notes = _notes(sheets, [section for section, _ in kinds])
     if not kinds:
         allowed = Message("a row of headings such as Versuch, Kantwinkel, Last, Eindringtiefe")
         action = Message('State the row of headings by --table "SHEET:ROW=penetration".')
         dialogue.refuse("no_table", name, allowed=allowed, action=action)
-    tables = [_import_table(section, form, dialogue, ignored, notes) for section, form in forms]
+    tables = [_import_table(section, form, dialogue, notes) for section, form in forms]
     qualifying = {(section.sheet.name, section.header) for section, _ in forms if section.qualified()}
     dialogue.open.extend(
         ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
         for note in notes
         if is_about_numbers(note) or (note.sheet, note.row) in qualifying
     )
-    dialogue.open.extend(_repeated(tables))
+    _refuse_repeated(tables, dialogue)
     tools = described_tools("tool", tables, dialogue, notes)
     plates = described_tools("plate", tables, dialogue, notes)
     tables = _with_names(tables, dialogue, notes, (tools, plates))
@@ -97,7 +97,7 @@ def _choose_table_form(section: Section, dialogue: Dialogue) -> TableForm | None
     return form
 
 
-def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignored) -> tuple[Note, ...]:
+def _notes(sheets: Sequence[Sheet], sections: Sequence[Section]) -> tuple[Note, ...]:
     """Cells outside of tables by row, and rows in tables with a single cell."""
     notes = []
     for sheet in sheets:
@@ -106,24 +106,20 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
             texts = [
                 cell.strip()
                 for column, cell in enumerate(cells)
-                if cell.strip()
-                and not ignored.hides(sheet, column)
-                and not any(section.has(row, column) for section in inside)
+                if cell.strip() and not sheet.hides(column) and not any(section.has(row, column) for section in inside)
             ]
-            if texts and not ignored.row(sheet.name, row):
+            if texts and not sheet.ignores_row(row):
                 notes.append(Note(sheet.name, row + 1, ": ".join(texts)))
     return tuple(notes)
 
 
-def _import_table(
-    section: Section, form: TableForm, dialogue: Dialogue, ignored: Ignored, notes: Sequence[Note]
-) -> ImportedTable:
+def _import_table(section: Section, form: TableForm, dialogue: Dialogue, notes: Sequence[Note]) -> ImportedTable:
     own = [note for note in notes if _is_about_table(note, section.sheet.name, {section.sheet.name})]
     before = len(dialogue.open)
     columns = choose_columns(section, form, dialogue, own)
     if len(dialogue.open) > before:  # rows would repeat the same error in each
         return ImportedTable(section, form, tuple(columns), ())
-    rows = stored_rows(section, columns, form, dialogue, ignored)
+    rows = stored_rows(section, columns, form, dialogue)
     return ImportedTable(section, form, tuple(columns), tuple(rows))
 
 
@@ -132,8 +128,8 @@ def _is_about_table(note: Note, sheet: str, with_tables: set[str]) -> bool:
     return note.sheet == sheet or note.sheet not in with_tables
 
 
-def _repeated(tables: Sequence[ImportedTable]) -> list[Problem]:
-    """Errors for tables whose rows are all in another one, such as a summary of all sheets."""
+def _refuse_repeated(tables: Sequence[ImportedTable], dialogue: Dialogue) -> None:
+    """Add errors for tables whose rows are all in another one, such as a summary of all sheets."""
     contents = [
         Counter(
             tuple(row.cells.get(column.name, "") for column in table.form.numbers if column.needed)
@@ -141,14 +137,8 @@ def _repeated(tables: Sequence[ImportedTable]) -> list[Problem]:
         )
         for table in tables
     ]
-    return [
-        error(
-            "repeated_table",
-            table.section.key,
-            value=other.section.key,
-            allowed=Message("each measurement once"),
-            action=Message('Exclude one with --table "{key}=-".', key=table.section.key),
-        )
+    pairs = [
+        (table, other)
         for table, own in zip(tables, contents, strict=True)
         for other, others in zip(tables, contents, strict=True)
         if table is not other
@@ -157,6 +147,10 @@ def _repeated(tables: Sequence[ImportedTable]) -> list[Problem]:
         and own <= others
         and (own != others or table.section.key < other.section.key)
     ]
+    for table, other in pairs:
+        key, value = table.section.key, other.section.key
+        action = Message('Exclude one with --table "{key}=-".', key=key)
+        dialogue.refuse("repeated_table", key, value=value, allowed=Message("each measurement once"), action=action)
 
 
 def _with_names(

@@ -16,7 +16,7 @@ from ..reading.table_forms import TableForm
 from .answers import Dialogue
 from .columns import ColumnChoice, number_columns
 from .sections import Section
-from .sheets import EXCLUDED, Ignored, column_letters
+from .sheets import EXCLUDED, column_letters
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",
@@ -57,29 +57,29 @@ class ImportedTable:
     rows: tuple[StoredRow, ...]
 
 
-def data_rows(section: Section, choices: Sequence[ColumnChoice], form: TableForm, ignored: Ignored) -> list[int]:
+def data_rows(section: Section, choices: Sequence[ColumnChoice], form: TableForm) -> list[int]:
     """Rows with a cell below a heading of required numbers."""
     needed = {column.name for column in form.numbers if column.needed}
     places = [choice.place for choice in choices if choice.column in needed and choice.place in section.own]
     return [
         row
         for row in range(section.start, section.end)
-        if any(section.sheet.cell(row, place) and not ignored.cell(section.sheet.name, row, place) for place in places)
+        if any(section.sheet.cell(row, place) and not section.sheet.ignores(row, place) for place in places)
     ]
 
 
 def stored_rows(
-    section: Section, choices: Sequence[ColumnChoice], form: TableForm, dialogue: Dialogue, ignored: Ignored
+    section: Section, choices: Sequence[ColumnChoice], form: TableForm, dialogue: Dialogue
 ) -> list[StoredRow]:
     """Rows of a section; open questions and errors are added to the dialogue."""
     sheet, numbers = section.sheet, number_columns(form)
-    rows = data_rows(section, choices, form, ignored)
+    rows = data_rows(section, choices, form)
     used = {choice.column: choice for choice in choices if choice.column}
     mark = _decimal_mark(section, [choice for choice in used.values() if choice.column in numbers], rows, dialogue)
     stored, above = [], dict[str, str]()
     for row in rows:
         cells = {
-            name: "" if ignored.cell(sheet.name, row, choice.place) else sheet.cell(row, choice.place, filled=True)
+            name: "" if sheet.ignores(row, choice.place) else sheet.cell(row, choice.place, filled=True)
             for name, choice in used.items()
         }
         if _is_summary(cells, form):
@@ -98,7 +98,7 @@ def stored_rows(
                 choice = used[name]
                 cells[name] = _number(section, row, choice, cells[name], mark, dialogue)
         stored.append(StoredRow(row + 1, cells))
-    dialogue.open.extend(_strays(section, rows, ignored))
+    dialogue.open.extend(_strays(section, rows))
     dialogue.open.extend(_split_numbers(section, choices, rows, numbers))
     return stored
 
@@ -206,32 +206,25 @@ def _split_numbers(
         if before.column in numbers and choice.column not in numbers:
             row = next((row for row in rows if section.sheet.cell(row, choice.place).isdecimal()), None)
             if row is not None:
+                value, allowed = section.sheet.cell(row, choice.place), Message("a text below this heading")
+                action = Message("Put decimal commas in quotes, or separate the cells by semicolons.")
+                place, heading = section.sheet.name, choice.heading
                 yield error(
-                    "split_number",
-                    section.sheet.name,
-                    row=row + 1,
-                    column=choice.heading,
-                    value=section.sheet.cell(row, choice.place),
-                    allowed=Message("a text below this heading"),
-                    action=Message("Put decimal commas in quotes, or separate the cells by semicolons."),
+                    "split_number", place, row=row + 1, column=heading, value=value, allowed=allowed, action=action
                 )
 
 
-def _strays(section: Section, rows: Sequence[int], ignored: Ignored) -> Iterator[Problem]:
+def _strays(section: Section, rows: Sequence[int]) -> Iterator[Problem]:
     """Errors for numbers next to the rows of a table, below no heading: a separator may have split a number."""
     sheet = section.sheet
     for row in rows:
         right = section.own.stop
         while section.is_last and (text := sheet.cell(row, right)):
-            if not ignored.cell(sheet.name, row, right):
+            if not sheet.ignores(row, right):
                 place = f"{sheet.name}!{column_letters(right)}"
+                action = Message("Add a heading, or exclude the column with --ignore {place}.", place=place)
+                column, allowed = column_letters(right), Message("cells below a heading")
                 yield error(
-                    "no_heading",
-                    sheet.name,
-                    row=row + 1,
-                    column=column_letters(right),
-                    value=text,
-                    allowed=Message("cells below a heading"),
-                    action=Message("Add a heading, or exclude the column with --ignore {place}.", place=place),
+                    "no_heading", sheet.name, row=row + 1, column=column, value=text, allowed=allowed, action=action
                 )
             right += 1

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
+from ..reading.header import NO_UNIT
 from ..reading.headings import (
     columns_by_synonym,
     heading_words,
@@ -19,11 +20,9 @@ from ..reading.headings import (
 )
 from ..reading.table_forms import TableForm
 from .answers import NONE, Answers
-from .sheets import FROM_NOTES, KINDS, Ignored, Sheet, is_plain_number
+from .sheets import FROM_NOTES, KINDS, Sheet, is_plain_number
 
 _FEWEST_HEADINGS: Final = 2
-NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
-"""Cells of a row of units below headings of texts, in small letters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,34 +75,34 @@ class Section:
         return row < self.start or texts > 1 or self.sheet.cell(row, self.columns[0]) == ""
 
 
-def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> list[Section]:
+def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
     """Tables of a sheet in their order, also side by side; `tables` are answers by heading row."""
     heads: list[tuple[int, range, int]] = []
     below: set[int] = set()
     for row in range(len(sheet.rows)):
         answer = tables.get(f"{sheet.name}:{row + 1}")
-        if answer == NONE or ignored.row(sheet.name, row):
+        if answer == NONE or sheet.ignores_row(row):
             continue
         taken, below = below, set()
-        groups = [group for group in _table_groups(sheet, row, ignored) if not taken & set(group)]
+        groups = [group for group in _table_groups(sheet, row) if not taken & set(group)]
         single = [group for group in groups if answer or _is_header(_row_texts(sheet, row, group))]
-        two_rows = () if answer else _two_row_headings(sheet, row, groups, ignored)
+        two_rows = () if answer else _two_row_headings(sheet, row, groups)
         pairs = [pair for pair in two_rows if not taken & set(pair)]
         heads += [(row, group, 1) for group in single if not any(set(group) & set(pair) for pair in pairs)]
         heads += [(row, group, 2) for group in pairs]
         below.update(column for group in pairs for column in group)
     sections: list[Section] = []
     for row in dict.fromkeys(row for row, _, _ in heads):
-        on_row = [_make_section(sheet, row, group, count, heads, ignored) for at, group, count in heads if at == row]
-        sections += _split_series([section for section in on_row if _has_data(section)], ignored)
+        on_row = [_make_section(sheet, row, group, count, heads) for at, group, count in heads if at == row]
+        sections += _split_series([section for section in on_row if _has_data(section)])
     return sections
 
 
-def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range], ignored: Ignored) -> Iterator[range]:
+def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range]) -> Iterator[range]:
     """Column groups whose headings run over this row and the next: a hyphen joins them, or neither row is complete."""
-    if row + 1 >= len(sheet.rows) or ignored.row(sheet.name, row + 1):
+    if row + 1 >= len(sheet.rows) or sheet.ignores_row(row + 1):
         return
-    lower = list(_groups(sheet, (row + 1,), ignored))
+    lower = list(_groups(sheet, (row + 1,)))
     alone = {
         column
         for at, on_row in ((row, groups), (row + 1, lower))
@@ -111,7 +110,7 @@ def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range], ignored: 
         if _is_header(_row_texts(sheet, at, group))
         for column in group
     }
-    for group in _groups(sheet, (row, row + 1), ignored):
+    for group in _groups(sheet, (row, row + 1)):
         top, below = _row_texts(sheet, row, group), [sheet.cell(row + 1, column) for column in group]
         hyphens = any(text.endswith("-") and _is_part(part) for text, part in zip(top, below, strict=True))
         both = any(top) and any(map(_is_part, below)) and not alone & set(group)
@@ -153,21 +152,21 @@ def _has_data(section: Section) -> bool:
     return any(sum(bool(section.sheet.cell(row, column)) for column in section.columns) > 1 for row in rows)
 
 
-def _groups(sheet: Sheet, rows: Sequence[int], ignored: Ignored) -> Iterator[range]:
+def _groups(sheet: Sheet, rows: Sequence[int]) -> Iterator[range]:
     """Neighbouring columns with a cell that is not blank in one of the rows."""
     width = max(len(sheet.filled[row]) for row in rows)
     filled = [any(sheet.cell(row, column, filled=True) for row in rows) for column in range(width)]
     start = 0
     for column in range(width + 1):
-        if column == width or not filled[column] or ignored.column(sheet.name, column):
+        if column == width or not filled[column] or sheet.ignores_column(column):
             if column - start >= _FEWEST_HEADINGS:
                 yield range(start, column)
             start = column + 1
 
 
-def _table_groups(sheet: Sheet, row: int, ignored: Ignored) -> list[range]:
+def _table_groups(sheet: Sheet, row: int) -> list[range]:
     """Column groups with cells on a row; empty columns separate groups unless only the whole row makes a table."""
-    groups = list(_groups(sheet, (row,), ignored))
+    groups = list(_groups(sheet, (row,)))
     end = next((at for at in range(row, len(sheet.filled)) if not any(sheet.filled[at])), len(sheet.filled))
     headed = [column for column in range(len(sheet.filled[row])) if sheet.cell(row, column, filled=True)]
     if not headed:
@@ -178,7 +177,7 @@ def _table_groups(sheet: Sheet, row: int, ignored: Ignored) -> list[range]:
         len(headed) < len(whole)
         and len(words) == len(headed)
         and all(column in headed or _is_empty(sheet, column, range(row, end)) for column in whole)
-        and not any(ignored.column(sheet.name, column) for column in whole)
+        and not any(sheet.ignores_column(column) for column in whole)
         and _is_complete(sheet, row, whole)
         and not any(_is_complete(sheet, row, group) for group in groups)
     )
@@ -220,7 +219,6 @@ def _make_section(
     columns: range,
     rows_of_headings: int,
     heads: Sequence[tuple[int, range, int]],
-    ignored: Ignored,
 ) -> Section:
     later = [other for other, group, _ in heads if other > row and set(group) & set(columns)]
     top = _row_texts(sheet, row, columns)
@@ -244,7 +242,7 @@ def _make_section(
     used = [
         place
         for place, column in enumerate(columns)
-        if not _is_empty(sheet, column, range(row, end)) and not ignored.hides(sheet, column)
+        if not _is_empty(sheet, column, range(row, end)) and not sheet.hides(column)
     ]
     headings, units = tuple(headings[place] for place in used), tuple(units[place] for place in used if units)
     return Section(sheet, row, start, end, tuple(columns[place] for place in used), headings, units, columns)
@@ -266,7 +264,7 @@ def _is_row_of_units(cells: Sequence[str]) -> bool:
     return not numbers and (any(map(known_unit, texts)) or len(texts) >= _FEWEST_HEADINGS)
 
 
-def _split_series(sections: Sequence[Section], ignored: Ignored) -> list[Section]:
+def _split_series(sections: Sequence[Section]) -> list[Section]:
     """One section for each series of the tables on a row, whose columns repeat: load, depth, load, depth.
 
     Series share the columns on their left that do not repeat. If no column names the tests, each row above the
@@ -278,7 +276,7 @@ def _split_series(sections: Sequence[Section], ignored: Ignored) -> list[Section
         for part in series
     ]
     if len(series) > 1 and all(words == own[0] for words in own) and not _names_tests(series[0].headings):
-        return _with_titles(series, ignored)
+        return _with_titles(series)
     return series
 
 
@@ -311,13 +309,11 @@ def _repeated_parts(section: Section) -> list[Section]:
     return parts
 
 
-def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
+def _with_titles(series: Sequence[Section]) -> list[Section]:
     """Series side by side, with one more column for each title above them, added at the right of the sheet."""
     first = series[0]
     sheet, row = first.sheet, first.header
-    while (
-        row and not ignored.row(sheet.name, row - 1) and all(len(_filled(sheet, row - 1, p.own)) == 1 for p in series)
-    ):
+    while row and not sheet.ignores_row(row - 1) and all(len(_filled(sheet, row - 1, p.own)) == 1 for p in series):
         row -= 1
     titles = [title for at in range(row, first.header) for title in _titles(series, at)]
     left = max(map(len, sheet.filled)) + 1

@@ -37,6 +37,8 @@ class Sheet:
     separator: separator of a CSV file, "" for a workbook.
     excluded: row and column of cells that the author may have excluded, by reason: HIDDEN or STRUCK.
     partly_struck, hidden_columns: cells with a part that is struck through, and hidden columns.
+    ignored: rows, columns and cells that the user excluded, as SHEET!5, SHEET!H and SHEET!H5.
+    hides_columns: True if the user excluded all hidden columns.
     """
 
     name: str
@@ -47,6 +49,25 @@ class Sheet:
     excluded: Mapping[str, frozenset[tuple[int, int]]] = field(default_factory=dict)
     partly_struck: frozenset[tuple[int, int]] = frozenset()
     hidden_columns: frozenset[int] = frozenset()
+    ignored: frozenset[str] = frozenset()
+    hides_columns: bool = False
+
+    def ignores_row(self, row: int) -> bool:
+        """True if the user excluded a row."""
+        return f"{self.name}!{row + 1}" in self.ignored
+
+    def ignores_column(self, column: int) -> bool:
+        """True if the user excluded a column."""
+        return f"{self.name}!{column_letters(column)}" in self.ignored
+
+    def ignores(self, row: int, column: int) -> bool:
+        """True if the user excluded a cell, directly or with its row or column."""
+        place = f"{self.name}!{column_letters(column)}{row + 1}"
+        return self.ignores_row(row) or self.ignores_column(column) or place in self.ignored
+
+    def hides(self, column: int) -> bool:
+        """True for a hidden column that the user excluded with all hidden ones."""
+        return self.hides_columns and column in self.hidden_columns
 
     def cell(self, row: int, column: int, *, filled: bool = False) -> str:
         """Text of a cell, "" outside of the sheet; rows and columns count from 0."""
@@ -153,28 +174,3 @@ def is_plain_number(text: str) -> bool:
     """True for a number with a decimal point or comma, and for a date or time in digits."""
     plain = text.strip()
     return is_number(plain, ".") or is_number(plain, ",") or bool(re.fullmatch(r"[\d.,:/\- ]*\d[\d.,:/\- T]*", plain))
-
-
-@dataclass(frozen=True, slots=True)
-class Ignored:
-    """Rows, columns and cells that the user excluded; `hidden`: also all hidden columns."""
-
-    places: frozenset[str]
-    hidden: bool = False
-
-    def row(self, sheet: str, row: int) -> bool:
-        """True if a row is excluded."""
-        return f"{sheet}!{row + 1}" in self.places
-
-    def hides(self, sheet: Sheet, column: int) -> bool:
-        """True for a hidden column that is excluded."""
-        return self.hidden and column in sheet.hidden_columns
-
-    def column(self, sheet: str, column: int) -> bool:
-        """True if a column is excluded."""
-        return f"{sheet}!{column_letters(column)}" in self.places
-
-    def cell(self, sheet: str, row: int, column: int) -> bool:
-        """True if a cell is excluded, directly or with its row or column."""
-        name = f"{sheet}!{column_letters(column)}{row + 1}"
-        return self.row(sheet, row) or self.column(sheet, column) or name in self.places

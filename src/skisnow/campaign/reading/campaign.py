@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
@@ -219,35 +219,21 @@ def _unread_files(there: Mapping[str, bool]) -> tuple[str, ...]:
     )
 
 
-def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> list[Problem]:
+def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> Iterator[Problem]:
     """Errors for units in campaign.toml whose heading is in no table, because they would be ignored silently."""
-    there = {file: table.headings for file, table in tables.items()}
-    return [
-        error(
-            "bad_toml",
-            CAMPAIGN_FILE,
-            column=path,
-            value=path.rpartition(".")[2],
-            allowed=Message("a heading of a table"),
-            action=Message("Write the heading as the table has it, or remove the line."),
-        )
-        for path in headings.without_heading(there)
-    ]
+    allowed = Message("a heading of a table")
+    action = Message("Write the heading as the table has it, or remove the line.")
+    for path in headings.without_heading({file: table.headings for file, table in tables.items()}):
+        name = path.rpartition(".")[2]
+        yield error("bad_toml", CAMPAIGN_FILE, column=path, value=name, allowed=allowed, action=action)
 
 
-def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
+def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> Iterator[Problem]:
     """Errors for files whose names differ from the expected ones only by case, because they would not be read."""
-    return [
-        error(
-            "unreadable_file",
-            name,
-            value=name,
-            allowed=name.lower(),
-            action=Message("Rename it to {name}.", name=name.lower()),
-        )
-        for name in sorted(there)
-        if name not in CAMPAIGN_FILES and name.lower() in absent
-    ]
+    for name in sorted(there):
+        if name not in CAMPAIGN_FILES and name.lower() in absent:
+            action = Message("Rename it to {name}.", name=name.lower())
+            yield error("unreadable_file", name, value=name, allowed=name.lower(), action=action)
 
 
 def read_description(files: RawFiles) -> CampaignFile | None:

@@ -217,15 +217,11 @@ def _in_si(entry: TomlValues, quantity: Quantity) -> float | None:
     if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
         low, high = quantity.usual
         unit = "m" if value < low else "µm"
+        path = entry.path_of(quantity.name)
+        allowed = Message("a number in mm; {low:g} to {high:g} is usual", low=low, high=high)
+        action = Message("If this is in {unit} convert it to mm; if it is in mm no action is needed.", unit=unit)
         entry.problems.append(
-            warning(
-                "unlikely_unit",
-                CAMPAIGN_FILE,
-                column=entry.path_of(quantity.name),
-                value=f"{value:g}",
-                allowed=Message("a number in mm; {low:g} to {high:g} is usual", low=low, high=high),
-                action=Message("If this is in {unit} convert it to mm; if it is in mm no action is needed.", unit=unit),
-            )
+            warning("unlikely_unit", CAMPAIGN_FILE, column=path, value=f"{value:g}", allowed=allowed, action=action)
         )
     return None if value is None else quantity.in_si(value)
 

@@ -12,7 +12,7 @@ import numpy as np
 from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
-from ..problems import Problem, error
+from ..problems import Problem
 from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
 from .columns import NameColumn, Table, is_unloading
 from .table_forms import BRANCH
@@ -129,18 +129,11 @@ def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
     start_of_code = dict(zip(code[met_first].tolist(), blocks.start[met_first].tolist(), strict=True))
     for row in blocks.start[again & ~key.is_blank[blocks.start]].tolist():
         before = int(table.row[start_of_code[int(key.code[row])]])
-        yield error(
-            "mixed_experiment",
-            table.form.file,
-            row=int(table.row[row]),
-            column=table.form.key,
-            experiment=key[row],
-            value=key[row],
-            allowed=Message(
-                "each name for one experiment, its rows together; this one also begins in row {before}", before=before
-            ),
-            action=Message("Rename one of the two, or bring the rows together."),
+        allowed = Message(
+            "each name for one experiment, its rows together; this one also begins in row {before}", before=before
         )
+        action = Message("Rename one of the two, or bring the rows together.")
+        yield table.error(row, "mixed_experiment", table.form.key, key[row], allowed, action)
 
 
 def _mixed_error(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:

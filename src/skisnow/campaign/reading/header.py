@@ -8,6 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 from ..._support.messages import Message, joined
 from ..problems import Problem, error, warning
@@ -26,8 +27,8 @@ from .table_forms import TableForm
 
 _MOST_TITLES = 20
 _FEWEST_UNITS = 2
-_NO_UNIT = {"", "-", "–", "#", "nr", "nr.", "no", "no."}
-"""Cells of a row of units below columns without one."""
+NO_UNIT: Final = {"", "-", "–", "#", "nr", "nr.", "no", "no."}
+"""Cells of a row of units below columns without one, in small letters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,7 @@ def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
     plain = [cell.strip().strip("[]()").strip() for cell in cells]
     units = tuple(map(known_unit, plain))
     others = {cell.casefold() for cell, unit in zip(plain, units, strict=True) if not unit}
-    return units if sum(map(bool, units)) >= _FEWEST_UNITS and others <= _NO_UNIT else ()
+    return units if sum(map(bool, units)) >= _FEWEST_UNITS and others <= NO_UNIT else ()
 
 
 def check_header(form: TableForm, header: Header) -> list[Problem]:

@@ -104,24 +104,15 @@ def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float
 def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
     value = table.numbers[name][rows[0]]
     more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
-    return warning(
-        "unlikely_unit",
-        table.form.file,
-        row=int(table.row[rows[0]]),
-        column=name,
-        experiment=table.names[table.form.key][rows[0]] or None,
-        value=f"{value:g}{more}",
-        allowed=Message(
-            "numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}",
-            unit=likely.unit,
-            far=FAR,
-            middle=middle,
-        ),
-        action=Message(
-            "Look whether this is {value} or a slip of the pen.",
-            value=likely.if_low if value < middle else likely.if_high,
-        ),
+    allowed = Message(
+        "numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}",
+        unit=likely.unit,
+        far=FAR,
+        middle=middle,
     )
+    other = likely.if_low if value < middle else likely.if_high
+    action = Message("Look whether this is {value} or a slip of the pen.", value=other)
+    return table.warning(rows[0], "unlikely_unit", name, f"{value:g}{more}", allowed, action)
 
 
 LARGEST_LOAD: Final = 80.0

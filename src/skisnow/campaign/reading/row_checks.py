@@ -167,6 +167,7 @@ def check_repeated_rows(table: Table) -> Iterator[Problem]:
     numbers = [np.where(np.isfinite(column), column, -np.inf).tolist() for column in table.numbers.values()]
     first: dict[tuple[object, ...], int] = {}
     repeated = 0
+    allowed = Message("each measurement once")
     for index, row in enumerate(zip(*names, *numbers, *table.further.values(), strict=True)):
         earlier = first.setdefault(row, index)
         if earlier == index:
@@ -174,20 +175,13 @@ def check_repeated_rows(table: Table) -> Iterator[Problem]:
         repeated += 1
         if repeated > MOST_LISTED:
             continue
-        yield warning(
-            "repeated_row",
-            table.form.file,
-            row=int(table.row[index]),
-            experiment=table.names[table.form.key][index] or None,
-            value=f"the same as row {int(table.row[earlier])}",
-            allowed=Message("each measurement once"),
-            action=Message("It counts again in the mean of its site: remove the row if it was pasted twice."),
-        )
+        action = Message("It counts again in the mean of its site: remove the row if it was pasted twice.")
+        yield table.warning(index, "repeated_row", None, f"the same as row {int(table.row[earlier])}", allowed, action)
     if repeated > MOST_LISTED:
         yield warning(
             "repeated_row",
             table.form.file,
             value=f"{repeated - MOST_LISTED} more repeated rows",
-            allowed=Message("each measurement once"),
+            allowed=allowed,
             action=Message("They count again in the means of their sites: remove rows that were pasted twice."),
         )
