@@ -204,7 +204,7 @@ def test_scatter_of_shear_stress_over_many_campaigns() -> None:
 
 def test_density_and_drop_cone_know_nothing_of_the_hardness() -> None:
     """Site by site, weighted by series, as a regression over all series sees them."""
-    weights = [site.series for site in PENETRATION_SITES]
+    weights = [site.tests for site in PENETRATION_SITES]
     hardness = np.repeat([site.snow_hardness for site in PENETRATION_SITES], weights)
     for quantity, mean in (("snow_density", 556.0), ("drop_cone_depth", 13.6e-3)):
         values = np.repeat([getattr(site, quantity) for site in PENETRATION_SITES], weights)

@@ -66,13 +66,14 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
             action = Message("Correct --{option}.", option="column")
             dialogue.refuse("bad_answer", section.key, column=heading, value=answer, allowed=allowed, action=action)
     dialogue.open.extend(_column_questions(section, form, stated))
+    numbers, cells_below = number_columns(form), section.units or ("",) * len(section.columns)
     choices = []
-    for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
+    for place, heading, below, column in zip(section.columns, section.headings, cells_below, stated, strict=True):
         unit = None
-        if column in number_columns(form):
-            unit = _choose_unit(section, form, heading, column, place, dialogue, notes)
+        if column in numbers:
+            unit = _choose_unit(section, form, heading, column, below, dialogue, notes)
         elif column in form.further and unit_of_column(column):
-            units = _statements(section, heading, column, place, dialogue, form, notes)
+            units = _stated_units(form, heading, column, below, dialogue, notes)
             column = column if units == {folded_unit(column)} else heading  # noqa: PLW2901
         choices.append(ColumnChoice(place, heading, "" if column == NONE else column or heading, unit))
     return choices
@@ -104,31 +105,24 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
         yield error("missing_column", section.key, value=None, allowed=allowed, action=action)
 
 
-def _statements(
-    section: Section, heading: str, column: str, place: int, dialogue: Dialogue, form: TableForm, notes: Sequence[Note]
+def _stated_units(
+    form: TableForm, heading: str, column: str, below: str, dialogue: Dialogue, notes: Sequence[Note]
 ) -> set[str]:
-    """Units that answer, heading, row of units and notes state for a column."""
-    below = section.units[section.columns.index(place)] if section.units else ""
+    """Units that answer, heading, the cell below it in a row of units, and notes state for a column."""
+    answer = known_unit(dialogue.answers.of_heading("unit", form.name, heading))
     named = folded_unit(column) if heading == column else named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
-    return {
-        *filter(None, (known_unit(dialogue.answers.of_heading("unit", form.name, heading)), named, known_unit(below))),
-        *of_notes,
-    }
+    return {*filter(None, (answer, named, known_unit(below))), *of_notes}
 
 
 def _choose_unit(
-    section: Section, form: TableForm, heading: str, column: str, place: int, dialogue: Dialogue, notes: Sequence[Note]
+    section: Section, form: TableForm, heading: str, column: str, below: str, dialogue: Dialogue, notes: Sequence[Note]
 ) -> UnitConversion | None:
-    units = _statements(section, heading, column, place, dialogue, form, notes)
+    units = _stated_units(form, heading, column, below, dialogue, notes)
     sizes = {conversion(unit, column) for unit in units}
-    below = section.units[section.columns.index(place)] if section.units else ""
     is_unknown = not known_unit(below) and below.casefold() not in NO_UNIT and below != heading
-    if (
-        len(sizes) == 1
-        and None not in sizes
-        and (not is_unknown or dialogue.answers.of_heading("unit", form.name, heading))
-    ):
+    is_clear = not is_unknown or dialogue.answers.of_heading("unit", form.name, heading)
+    if len(sizes) == 1 and None not in sizes and is_clear:
         return sizes.pop()
     if sizes:
         value = ", ".join(sorted(units | ({below} if is_unknown else set())))

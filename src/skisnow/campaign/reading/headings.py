@@ -72,48 +72,46 @@ def parse_headings(top: TomlValues) -> Headings:
     return Headings(*_by_table(top.table(KEY), _name), *_by_table(top.table(UNITS_KEY), _unit))
 
 
-Entry: TypeAlias = "Callable[[TomlValues, str, tuple[str, ...]], dict[str, str]]"
+Entry: TypeAlias = "Callable[[TomlValues, str, tuple[str, ...]], str]"
 
 
 def _by_table(section: TomlValues, entry: Entry) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
     """Entries by plain heading: those for all tables, and by file those for one table.
 
-    entry: reader of the value of a heading in a section, given the names of the columns.
+    entry: reader of the value of a heading in a section, given the names of the columns; "" for an invalid one.
     """
     everywhere: dict[str, str] = {}
     of_table: dict[str, dict[str, str]] = {}
     every_name = tuple(dict.fromkeys(name for form in FORMS.values() for name in form.known))
     for heading, value in section.values.items():
         if heading in FORMS and isinstance(value, Mapping):
-            form, table, entries = FORMS[heading], section.table(heading), dict[str, str]()
-            for name in table.values:
-                entries |= entry(table, name, form.known)
-            of_table[form.file] = entries
-        else:
-            everywhere |= entry(section, heading, every_name)
+            form, table = FORMS[heading], section.table(heading)
+            entries = {plain_heading(name): entry(table, name, form.known) for name in table.values}
+            of_table[form.file] = {name: text for name, text in entries.items() if text}
+        elif text := entry(section, heading, every_name):
+            everywhere[plain_heading(heading)] = text
     return everywhere, of_table
 
 
-def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> dict[str, str]:
-    """Unit of a heading by plain heading, such as ``"Last" = "kg"``; empty, with an error, if it is unknown."""
+def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> str:
+    """Unit of a heading, such as ``"Last" = "kg"``; empty, with an error, if it is unknown."""
     value = section.values[heading]
-    if unit := known_unit(value) if isinstance(value, str) else "":
-        return {plain_heading(heading): unit}
-    allowed = Message("one of the units {every_unit}", every_unit=every_unit())
-    section.refuse(heading, allowed, Message("Write the unit in quotes."))
-    return {}
+    unit = known_unit(value) if isinstance(value, str) else ""
+    if not unit:
+        allowed = Message("one of the units {every_unit}", every_unit=every_unit())
+        section.refuse(heading, allowed, Message("Write the unit in quotes."))
+    return unit
 
 
-def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> dict[str, str]:
-    """Column of a heading by plain heading; empty, with an error, if it is unknown."""
+def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> str:
+    """Column of a heading; empty, with an error, if it is unknown."""
     value = section.values[heading]
     if isinstance(value, str) and value.strip() in columns:
-        return {plain_heading(heading): value.strip()}
+        return value.strip()
     write = Message("Write the heading, an equals sign and the column's name, both in quotes.")
-    section.refuse_unknown(
-        heading, value, columns, Message("one of the columns {columns}", columns=list(columns)), write
-    )
-    return {}
+    allowed = Message("one of the columns {columns}", columns=list(columns))
+    section.refuse_unknown(heading, value, columns, allowed, write)
+    return ""
 
 
 _OWN: Final = {

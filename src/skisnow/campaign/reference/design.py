@@ -17,6 +17,7 @@ depths of each site and their scatter, and that the pairs are among the tests at
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import Final
 
@@ -30,25 +31,18 @@ from ...snow.published import moessner_2013
 
 
 @dataclass(frozen=True, slots=True)
-class PenetrationSite:
-    """A site of penetration tests: the median H_V (N/m³), mean ρ (kg/m³) and H_p (m) of its snow, its paired tests."""
+class Site:
+    """A site: number of tests, mean ρ (kg/m³) and H_p (m); median H_V (N/m³) and paired tests of a penetration site.
 
-    name: str
-    series: int
-    snow_hardness: float
-    snow_density: float
-    drop_cone_depth: float
-    spots: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class ShearSite:
-    """A site of shear tests at 90° with no penetration tests: mean ρ (kg/m³) and H_p (m) of its snow."""
+    The tests are penetration series, or shear tests at 90° at a site without penetration tests.
+    """
 
     name: str
     tests: int
     snow_density: float
     drop_cone_depth: float
+    snow_hardness: float = math.nan
+    spots: int = 0
 
 
 TOOL: Final = "ski piece"
@@ -73,7 +67,7 @@ DROP_CONE_REPEATS: Final = 3
 # to have none with the medians (correlations of 0.01): eight sites drawn at random would often show one by chance.
 # The two sites with pairs have nearly the same density, so that S_f has no relation with H_V between them either.
 PENETRATION_SITES: Final = tuple(
-    PenetrationSite(f"site {letter}", series, hardness * N_PER_MM3, density, cone * MM, spots)
+    Site(f"site {letter}", series, density, cone * MM, hardness * N_PER_MM3, spots)
     for letter, series, hardness, density, cone, spots in zip(
         "ABCDEFGH",
         (30, 30, 30, 30, 29, 29, 29, 29),
@@ -113,9 +107,9 @@ SOFT_TESTS: Final = 30
 SOFT_SCATTER: Final = 0.006 * N_PER_MM2
 
 FURTHER_SHEAR_SITES: Final = (
-    ShearSite("site K", 8, 440.0, 11.9 * MM),
-    ShearSite("site L", 8, 440.0, 13.5 * MM),
-    ShearSite("site M", 7, 600.0, 13.0 * MM),
+    Site("site K", 8, 440.0, 11.9 * MM),
+    Site("site L", 8, 440.0, 13.5 * MM),
+    Site("site M", 7, 600.0, 13.0 * MM),
 )
 """Their drop-cone depths are chosen so that ρ and H_p have no relation over the tests at 90°."""
 SHEAR_DENSITY_RANGE: Final = moessner_2013.SNOW_DENSITY_RANGE
@@ -129,7 +123,7 @@ FLAT_LIMIT: Final = LOADS[-1] / (SKI_PIECE.length * SKI_PIECE.width * SHALLOWEST
 
 def planned_angles() -> FloatArray:
     """Edge angle planned for each series (rad): the angles in turn within each site."""
-    turn = [EDGE_ANGLES_DEG[index % len(EDGE_ANGLES_DEG)] for site in PENETRATION_SITES for index in range(site.series)]
+    turn = [EDGE_ANGLES_DEG[index % len(EDGE_ANGLES_DEG)] for site in PENETRATION_SITES for index in range(site.tests)]
     return np.array(turn) * DEGREE
 
 

@@ -49,7 +49,7 @@ class DrawnPenetration(NamedTuple):
 def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> FloatArray:
     """Draw H_V (N/m³) of each series."""
     sites = design.PENETRATION_SITES
-    medians = np.repeat([site.snow_hardness for site in sites], [site.series for site in sites])
+    medians = np.repeat([site.snow_hardness for site in sites], [site.tests for site in sites])
     low, high = np.log(design.HARDNESS_RANGE).tolist()
     return np.exp(_normal_within(generator, np.log(medians), noise.hardness_log_sd, (low, high)))
 
@@ -190,10 +190,7 @@ def density(generator: np.random.Generator) -> DensitySamples:
 
 def drop_cone(generator: np.random.Generator) -> DropConeTests:
     """Draw the repeats of the drop-cone tests of the penetration sites, then of the sites of shear tests at 90°."""
-    measured_sites: tuple[design.PenetrationSite | design.ShearSite, ...] = (
-        *design.PENETRATION_SITES,
-        *design.FURTHER_SHEAR_SITES,
-    )
+    measured_sites = (*design.PENETRATION_SITES, *design.FURTHER_SHEAR_SITES)
     sites = [site for site in measured_sites for _ in range(design.DROP_CONE_TESTS)]
     repeats = design.DROP_CONE_REPEATS
     centre = np.repeat([site.drop_cone_depth for site in sites], repeats)
@@ -256,13 +253,13 @@ def _row_numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.arange(2, count + 2, dtype=np.int64)  # the header is line 1
 
 
-def _spot_name(site: design.PenetrationSite, index: int) -> str:
+def _spot_name(site: design.Site, index: int) -> str:
     return f"{site.name[-1]}{index + 1:02d}" if index < site.spots else ""
 
 
 def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> PenetrationTests:
     count, steps = edge_angle.size, len(design.LOADS)
-    sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.series)]
+    sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.tests)]
     return PenetrationTests(
         experiment=_numbered_names("P", count),
         site=tuple(site.name for site, _ in sites),
