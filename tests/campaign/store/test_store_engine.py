@@ -168,6 +168,8 @@ def test_a_connection_that_may_not_write(id_: str, place: Path, folder: Path, tm
         event.listen(store.engine, "connect", lambda connection, _: connection.execute("PRAGMA query_only = ON"))
         with raises(StoreError, "not_stored", reason=READ_ONLY):
             store.add(folder)
+        with raises(StoreError, "not_written", reason=READ_ONLY):
+            store.remove(id_)
         assert [stored.id for stored in store.list()] == [id_]
         assert store.verify() == ()
         store.export(id_, tmp_path / "out")
