@@ -13,32 +13,6 @@ from .._support.messages import Message, joined
 
 Severity: TypeAlias = Literal["error", "warning", "flag"]
 
-ERROR_CODES = (
-    "missing_column",
-    "not_a_number",
-    "out_of_range",
-    "unknown_tool",
-    "unknown_plate",
-    "mixed_experiment",
-    "empty_file",
-    "unreadable_file",
-    "bad_toml",
-    "correction_mismatch",
-    "other_unit",
-    "unit_missing",
-)
-WARNING_CODES = (
-    "angles_look_like_radians",
-    "angle_above_60",
-    "unlikely_unit",
-    "repeated_row",
-    "unknown_column",
-    "unreadable_date",
-    "unread_sheet",
-    "encoding",
-    "separator",
-    "converted_unit",
-)
 _SEVERITIES: Final = {"error": Message("error"), "warning": Message("warning"), "flag": Message("flag")}
 LONGEST_VALUE: Final = 200
 """Characters of a value that its sentence shows."""

@@ -10,12 +10,12 @@ test has the cells of the file.
 from __future__ import annotations
 
 import secrets
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from typing import Any, Final
 
-from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Select, and_, func, insert, select
 from sqlalchemy.exc import DatabaseError
 
 from ..._support.errors import ParameterError, StoreError
@@ -27,8 +27,9 @@ from .rows import damage_error, require_type
 from .schema import campaign, journal, journal_entry
 from .store import Store
 
-_IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
-"""Condition for journals of campaigns in entry; those of stored campaigns have corrections."""
+_STORED: Final = select(campaign.c.id)
+_ENTERED: Final = select(journal.c.id).where(journal.c.id.not_in(_STORED))
+"""Ids of stored campaigns, whose journals have corrections, and of campaigns in entry."""
 
 
 class OvertakenError(StoreError):
@@ -89,7 +90,7 @@ class Journals:
                 func.coalesce(func.max(journal_entry.c.at), journal.c.begun_at),
             )
             .join_from(journal, journal_entry, isouter=True)
-            .where(_IN_ENTRY)
+            .where(journal.c.id.in_(_ENTERED))
             .group_by(journal.c.id)
             .order_by(journal.c.begun_at, journal.c.id)
         )
@@ -105,18 +106,18 @@ class Journals:
 
         Raises StoreError: the journal is unknown.
         """
-        return self._read(id, after, _require_campaign_in_entry)
+        return self._read(id, after, _ENTERED)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:
         """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
 
         Raises StoreError: the campaign is unknown.
         """
-        return self._read(id, after, _require_stored_campaign)
+        return self._read(id, after, _STORED)
 
-    def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
+    def _read(self, id_: str, after: int, ids: Select[Any]) -> tuple[JournalEntry, ...]:
         with database_errors(self._path, "not_read"), reading(self._engine) as connection:
-            require(connection, id_)
+            _require_id(connection, ids, id_)
             query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
             rows = connection.execute(query).mappings()
             return tuple(sorted(map(parse_entry, rows), key=lambda entry: entry.uid))
@@ -129,7 +130,7 @@ class Journals:
         Raises StoreError: the journal is unknown, or the entry to correct or undo is.
         """
         with database_errors(self._path, "not_written"), writing(self._engine) as connection:
-            _require_campaign_in_entry(connection, id)
+            _require_id(connection, _ENTERED, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
             _require_current(connection, id, entry, seen)
@@ -147,7 +148,7 @@ class Journals:
         Raises StoreError: the campaign is unknown, or the entry to undo is.
         """
         with database_errors(self._path, "not_written"), writing(self._engine) as connection:
-            _require_stored_campaign(connection, id)
+            _require_id(connection, _STORED, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
             _require_current(connection, id, entry, seen)
@@ -170,15 +171,9 @@ def _journal_head(name: str, id_: Any, begun_at: Any, n_entries: Any, last_at: A
     return JournalHead(id_, name, begun_at, n_entries, last_at)
 
 
-def _require_campaign_in_entry(connection: Connection, id_: str) -> None:
-    if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
-        raise StoreError("The store has no campaign in entry with the id {id!r}; the list of campaigns names all.").tag(
-            "unknown_id", id=id_
-        )
-
-
-def _require_stored_campaign(connection: Connection, id_: str) -> None:
-    if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
+def _require_id(connection: Connection, ids: Select[Any], id_: str) -> None:
+    """Raise a `StoreError` if an id is not one of those that a query selects."""
+    if id_ not in set(connection.execute(ids).scalars()):
         raise StoreError("The store keeps no campaign with the id {id!r}; the list of campaigns names all.").tag(
             "unknown_id", id=id_
         )
