@@ -264,9 +264,9 @@ def test_of_many_experiments_those_it_names_are_drawn(reference: Reported, monke
     data = ReportData(reference.analysis)
     drawing = sites(data, ())
     assert isinstance(drawing, Drawing)
-    step = thinned(len(data.hardness) + len(data.stress)).step
+    step = thinned(len(data.pressed) + len(data.sheared)).step
     assert step > 10 and str(step) in drawing.whole_caption
-    for axes, values in zip(drawing.figure.axes, (data.hardness, data.stress), strict=True):
+    for axes, values in zip(drawing.figure.axes, (data.pressed.value, data.sheared.value), strict=True):
         clouds = [line for line in axes.lines if line.get_marker() == "."]
         assert sum(np.size(cloud.get_xdata()) for cloud in clouds) == len(values[::step])
 

@@ -21,12 +21,11 @@ from skisnow.report.turn.chain import (
     afterbody_depth_ratio,
     band_shares,
     band_width,
-    loaded_skis,
     maximum_distance,
     middle_track,
     used_grip,
 )
-from skisnow.report.turn.figures import TimedTrack
+from skisnow.report.turn.figures import TimedTrack, loaded_skis
 from skisnow.report.turn.page import FIGURES, contacts_table, parameters_table, shares_table, write_turn_report
 from skisnow.report.turn.sentences import contrast, key_sentences, meaning
 from skisnow.scenario.identify_section import Prior, measured_of

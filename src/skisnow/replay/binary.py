@@ -70,8 +70,6 @@ _Part = TypeVar("_Part", Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplayS
 def replay_bytes(replay: Replay) -> bytes:
     """Bytes of a replay in the format of this module.
 
-    Notes
-    -----
     A run of 5 s of two skis with 42 stations at 100 moments a second is 0.5 MB: two thirds along the skis, a third of
     groove.
     """

@@ -33,8 +33,6 @@ from .skier import JOINTS, part_poses, skier_mesh, skier_parts
 def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> bytes:
     """GLB file of the moment nearest to a time (s); ``exaggeration`` is the factor of bending and twist.
 
-    Notes
-    -----
     Metres; y is up as in glTF 2.0, and the node ``run`` below has the run's axes. Colours of vertices: normal force per
     length along the skis, residual depth along the groove, on the same scales as on the page.
 
@@ -83,8 +81,6 @@ _HIDDEN_AND_SHOWN: Final = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     """GLB file of a whole replay at true speed; ``exaggeration`` is the factor of bending and twist.
 
-    Notes
-    -----
     Metres; y is up as in glTF 2.0, and the node ``run`` has the run's axes. The animation ``run`` begins at 0 with the
     first moment and has a key at every moment, at most 100 per second; places are linear between them, attitudes take
     the shortest rotation. The node ``sledge`` is at the middle between the boots; each ski below it has a joint for a

@@ -49,32 +49,15 @@ def write_replay(
 ) -> Path:
     """Write a replay as one HTML file that opens without a server and without network.
 
-    Parameters
-    ----------
-    run
-        A run, its replay, or its folder or file.
-    path
-        Path of the HTML file; an existing file is replaced.
-    ghost
-        Second run, shown translucent at the same times.
-    title
-        Title for the reader (default: the folder's name, or "A simulated run").
-    track
-        Measured track in the run's axes; not allowed with a replay, which has its own track.
-    language
-        Language of the page (en, de).
-
-    Returns
-    -------
-    Path
-        Path of the file.
-
-    Raises
-    ------
-    ParameterError
-        A folder has no run that can be shown, or the language is unknown.
-    OutputError
-        The file cannot be written.
+    run: a run, its replay, or its folder or file.
+    path: path of the HTML file; an existing file is replaced.
+    ghost: second run, shown translucent at the same times.
+    title: title for the reader (default: the folder's name, or "A simulated run").
+    track: measured track in the run's axes; not allowed with a replay, which has its own track.
+    language: language of the page (en, de).
+    Returns: path of the file.
+    Raises ParameterError: a folder has no run that can be shown, or the language is unknown.
+    Raises OutputError: the file cannot be written.
     """
     require_language(language)
     shown = [_make_replay(run, title, track)]

@@ -138,17 +138,9 @@ class ReplayTrack:
 def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
     """Measured track for a replay, without points that have no place.
 
-    Parameters
-    ----------
-    track
-        Track in the run's axes: x down the fall line, y left, z out of the snow.
-    starts_at
-        Time of the run at the first point (s).
-
-    Raises
-    ------
-    ParameterError
-        The axes are east, north and up, or fewer than two points have a place.
+    track: track in the run's axes: x down the fall line, y left, z out of the snow.
+    starts_at: time of the run at the first point (s).
+    Raises ParameterError: the axes are east, north and up, or fewer than two points have a place.
     """
     if track.axes == "east_north_up":
         raise ParameterError(
@@ -166,37 +158,22 @@ def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
 class Replay:
     """A run as arrays in SI units and radians.
 
-    Attributes
-    ----------
-    title, facts
-        Title, and lines of name and value for the reader.
-    tilt
-        Angle of the shown plane's x axis below the horizontal (rad): the inclination of a plane; 0 on a profile and a
+    title, facts: title, and lines of name and value for the reader.
+    tilt: angle of the shown plane's x axis below the horizontal (rad): the inclination of a plane; 0 on a profile and a
         terrain, whose axes are horizontal and vertical.
-    profile
-        Distance and height of a measured slope (m), shape (p, 2).
-    terrain
-        Measured heights over the place; without terrain and profile the slope is the plane z = 0.
-    centre_of_mass_height
-        Height of the centre of mass above the bases (m).
-    time
-        Times (s), shape (n,).
-    place, attitude
-        Place of the middle between the boots (m), (n, 3); unit quaternion w, x, y, z from sledge to space, (n, 4).
-    speed, curvature, heading
-        Speed (m/s), 1/turn radius (1/m), heading from the fall line (rad), positive left, (n,).
-    depth
-        Depth of the loaded edge under the boot below the undisturbed surface (m), (n, 2).
-    skis, groove
-        Shape and load of the skis, and their groove.
-    track
-        Measured track.
-    gates
-        Feet of the gates' poles on the snow (m), (g, 3), in the order of the course.
-    gate_times
-        Time from the start of the run to each gate (s), (g,); NaN for a gate that was not crossed.
-    skier
-        Skier of the run.
+    centre_of_mass_height: height of the centre of mass above the bases (m).
+    time: times (s), shape (n,).
+    place, attitude: place of the middle between the boots (m), (n, 3); unit quaternion w, x, y, z from sledge to space,
+        (n, 4).
+    speed, curvature, heading: speed (m/s), 1/turn radius (1/m), heading from the fall line (rad), positive left, (n,).
+    depth: depth of the loaded edge under the boot below the undisturbed surface (m), (n, 2).
+    skis, groove: shape and load of the skis, and their groove.
+    profile: distance and height of a measured slope (m), shape (p, 2).
+    track: measured track.
+    gates: feet of the gates' poles on the snow (m), (g, 3), in the order of the course.
+    gate_times: time from the start of the run to each gate (s), (g,); NaN for a gate that was not crossed.
+    terrain: measured heights over the place; without terrain and profile the slope is the plane z = 0.
+    skier: skier of the run.
     """
 
     title: str
@@ -223,17 +200,9 @@ class Replay:
 def ski_edges(replay: Replay, frame: int, *, exaggeration: float = 1.0) -> FloatArray:
     """Both edges of both skis' bases in space (m): (ski, station, edge (0 left, 1 right), 3).
 
-    Parameters
-    ----------
-    replay
-        The replay.
-    frame
-        Index of the moment, 0 to n - 1.
-    exaggeration
-        Factor of bending and twist.
+    frame: index of the moment, 0 to n - 1.
+    exaggeration: factor of bending and twist.
 
-    Notes
-    -----
     With x ahead, l across the base to the left and n away from the snow, a ski's base at station s has its middle at
     s x + (h + w) n from the boot and its edges at ± b/2 (cos φ l - sin φ n): h the unloaded base, w the bending, b the
     width, φ the twist. Bending does not shorten the distances of stations.

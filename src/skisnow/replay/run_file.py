@@ -52,21 +52,11 @@ def replay_of_file(
 ) -> Replay:
     """Replay of a run from its file.
 
-    Parameters
-    ----------
-    path
-        Path of run.nc or of its folder.
-    title
-        Title for the reader (default: the folder's name).
-    ski
-        Ski of the run (default: read from the file that the scenario names).
-    track
-        Measured track in the run's axes.
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read or is not a run, or a file that its scenario names is missing.
+    path: path of run.nc or of its folder.
+    title: title for the reader (default: the folder's name).
+    ski: ski of the run (default: read from the file that the scenario names).
+    track: measured track in the run's axes.
+    Raises ParameterError: the file cannot be read or is not a run, or a file that its scenario names is missing.
     """
     path = Path(path)
     path = path / RUN_FILE if path.is_dir() else path

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from .._support.arrays import FloatArray
 from .._support.messages import Message, outcome_words
 from .._support.units import MM
-from .figures.style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
+from .figures.style import BLACK, DOUBLE_MM, GREY, PALE, legend_below, line_style, new_figure
 from .formatting import figure_text, significant
 from .summaries import answers_of, ski_titles
 
@@ -31,7 +31,6 @@ BOOT_REACH: Final = 0.4
 """Distance (m) before and behind the boot at which the first circle meets the edge line."""
 _BOOT_CIRCLE: Final = (0, (4, 1.5))
 _CHORD_CIRCLE: Final = (0, (1, 1))
-_LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
 
 
 def carved_skis(contents: Json) -> Figure:
@@ -50,7 +49,7 @@ def carved_skis(contents: Json) -> Figure:
     _draw_plan(figure.add_subplot(grid[2, :], sharex=first), answers)
     figure.suptitle(_inputs_in_words(answers[0]), x=0.01, ha="left", fontsize=8.0)
     handles = [
-        Line2D([], [], color=_colour(place), linestyle=_line(place), label=_label(title, answer["outcome"]))
+        Line2D([], [], label=_label(title, answer["outcome"]), **line_style(place))
         for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True))
     ]
     circles = (
@@ -60,14 +59,6 @@ def carved_skis(contents: Json) -> Figure:
     handles += [Line2D([], [], color=BLACK, linestyle=style, linewidth=0.9, label=label) for label, style in circles]
     legend_below(figure, handles)
     return figure
-
-
-def _colour(place: int) -> str:
-    return COLOURS[place % len(COLOURS)]
-
-
-def _line(place: int) -> Any:
-    return _LINE_STYLES[place % len(_LINE_STYLES)]
 
 
 def _label(title: str, outcome: str) -> str:
@@ -92,7 +83,7 @@ def _inputs_in_words(answer: Json) -> str:
 def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
     for place, answer in enumerate(answers):
         if answer[key] is not None:
-            axes.plot(answer["station_m"], _with_nan(answer[key]), color=_colour(place), linestyle=_line(place))
+            axes.plot(answer["station_m"], _with_nan(answer[key]), **line_style(place))
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylabel(label)
@@ -117,9 +108,10 @@ def _draw_plan(axes: Axes, answers: list[Json]) -> None:
     for place, answer in enumerate(answers):
         if answer["edge_line_mm"] is None:
             continue
+        colour = line_style(place)["color"]
         station, line = np.asarray(answer["station_m"])[::-1], _with_nan(answer["edge_line_mm"])[::-1] * MM
         line -= np.interp(0.0, station, line)
-        axes.plot(station, line / MM, color=_colour(place), linewidth=3.0, alpha=0.35, solid_capstyle="butt")
+        axes.plot(station, line / MM, color=colour, linewidth=3.0, alpha=0.35, solid_capstyle="butt")
         circles = []
         if answer["turn_radius_boot_m"] is not None:
             circles.append((_BOOT_CIRCLE, (-BOOT_REACH, BOOT_REACH)))
@@ -127,7 +119,7 @@ def _draw_plan(axes: Axes, answers: list[Json]) -> None:
             circles.append((_CHORD_CIRCLE, contact_ends(answer)))
         for style, (rear, front) in circles:
             x, y = arc_through(station, line, rear, front)
-            axes.plot(x, y / MM, color=_colour(place), linestyle=style, linewidth=0.9)
+            axes.plot(x, y / MM, color=colour, linestyle=style, linewidth=0.9)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_xlabel(Message("position along the ski (m); boot = 0, tail left, tip right"))
     axes.set_ylabel(Message("edge towards the\ninside of the turn (mm)"))

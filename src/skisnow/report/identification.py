@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
@@ -17,14 +17,14 @@ from .._support.messages import ENGLISH, Message, in_language, outcome_words, te
 from .._support.spreadsheet_text import csv_text, protect_from_formulas
 from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing, Picture
-from .figures.figure_files import picture_files, silent, write_pictures
+from .figures.figure_files import Progress, picture_files, silent, write_pictures
 from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, ORANGE, PALE, legend_below, new_figure
 from .formatting import counted, figure_text, interval, json_text, prose, significant
 from .sheet import Header, Section, sheet
 from .table import Column, Table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ..identification.problem import Fit
     from ..identification.result import Identification, Interval
 
+Json: TypeAlias = "Mapping[str, Any]"
 ANSWER: Final = "identification.json"
 FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "residuals_marks", "profiles")
 """Names of an identification's figures, in figures/ as .png and .svg."""
@@ -39,12 +40,7 @@ COLUMNS: Final = ("run", "kind", "along", "quantity", "measured", "identified", 
 
 
 def write_identify_report(
-    result: Identification,
-    contents: Mapping[str, Any],
-    folder: str | Path,
-    *,
-    language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    result: Identification, contents: Json, folder: str | Path, *, language: str = ENGLISH, progress: Progress = silent
 ) -> Path:
     """Write identification.json, fits.csv, figures/ and report.html; returns the page's path.
 
@@ -59,15 +55,13 @@ def write_identify_report(
     require_language(language)
     folder = Path(folder)
     require_writable(folder)
-    report = progress or silent
     with staged(folder, last=ANSWER) as stage:
         stage.stale += picture_files(FIGURES)
         write_file(stage.path / ANSWER, f"{json_text(contents)}\n")
         write_file(stage.path / "fits.csv", fits_csv(result))
-        pictures = write_pictures(
-            _drawings(result), stage.path / "figures", every=FIGURES, language=language, progress=report
-        )  # fmt: skip
-        report("report.html")
+        drawings, figures = _drawings(result), stage.path / "figures"
+        pictures = write_pictures(drawings, figures, every=FIGURES, language=language, progress=progress)
+        progress("report.html")
         write_file(stage.path / "report.html", identify_page(result, pictures, language=language))
     return folder / "report.html"
 
@@ -88,41 +82,39 @@ def fits_csv(result: Identification) -> str:
 def identify_page(result: Identification, pictures: list[Picture], *, language: str = ENGLISH) -> str:
     """The HTML of the report."""
     with in_language(language):
-        return _page(result, pictures)
-
-
-def _page(result: Identification, pictures: list[Picture]) -> str:
-    fits = [picture for picture in pictures if picture.name != "profiles"]
-    profiles = [picture for picture in pictures if picture.name == "profiles"]
-    outcome = outcome_words(result.outcome)
-    sections = [
-        Section(
-            "outcome",
-            Message("Outcome"),
-            key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
-            tables=[parameters_table(result)],
-        )
-    ]
-    if result.warnings:
-        sections.append(
-            Section("warnings", Message("Warnings"), words=[prose("{text}.", text=text) for text in result.warnings])
-        )
-    if fits:
-        sections.append(Section("fit", Message("Measured and identified"), pictures=fits))
-    if len(result.parameters) > 1:
-        sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
-    if profiles:
-        sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
-    sections.append(Section("provenance", Message("How it was computed"), words=_method_sentences(result)))
-    facts = [
-        (Message("Scenario"), result.scenario),
-        (Message("Points"), str(result.points)),
-        (Message("Computed"), f"skisnow {version('skisnow')}"),
-    ]
-    header = Header(
-        Message("Parameters identified from measurements"), _title(result), facts, headline=_headline(result)
-    )
-    return sheet(header, sections)
+        fits = [picture for picture in pictures if picture.name != "profiles"]
+        profiles = [picture for picture in pictures if picture.name == "profiles"]
+        outcome = outcome_words(result.outcome)
+        sections = [
+            Section(
+                "outcome",
+                Message("Outcome"),
+                key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
+                tables=[parameters_table(result)],
+            )
+        ]
+        if result.warnings:
+            sections.append(
+                Section(
+                    "warnings", Message("Warnings"), words=[prose("{text}.", text=text) for text in result.warnings]
+                )
+            )
+        if fits:
+            sections.append(Section("fit", Message("Measured and identified"), pictures=fits))
+        if len(result.parameters) > 1:
+            sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
+        if profiles:
+            sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
+        sections.append(Section("provenance", Message("How it was computed"), words=_method_sentences(result)))
+        facts = [
+            (Message("Scenario"), result.scenario),
+            (Message("Points"), str(result.points)),
+            (Message("Computed"), f"skisnow {version('skisnow')}"),
+        ]
+        title = f"{', '.join(row.parameter.name for row in result.parameters)}: {outcome}"
+        kind = Message("Parameters identified from measurements")
+        header = Header(kind, title, facts, headline=_headline(result))
+        return sheet(header, sections)
 
 
 def _headline(result: Identification) -> Markup:
@@ -137,11 +129,6 @@ def _headline(result: Identification) -> Markup:
         )
     value = Markup("<strong>{}</strong>").format(f"{significant(first.value)} {first.parameter.unit}".strip())
     return prose("{name} {value}, {ends}.", name=first.parameter.name, value=value, ends=ends)
-
-
-def _title(result: Identification) -> str:
-    names = ", ".join(row.parameter.name for row in result.parameters)
-    return f"{names}: {outcome_words(result.outcome)}"
 
 
 def _method_sentences(result: Identification) -> list[Markup]:

@@ -85,7 +85,7 @@ def page_environment(language: str, *, package: str = "skisnow.report", folder: 
 
     environment = Environment(
         loader=PackageLoader(package, folder), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        extensions=["jinja2.ext.i18n"], finalize=_translate_messages(text),
+        extensions=["jinja2.ext.i18n"], finalize=lambda value: text(value) if isinstance(value, Message) else value,
     )  # fmt: skip
     environment.policies["ext.i18n.trimmed"] = True
     environment.filters["text"] = text
@@ -93,10 +93,6 @@ def page_environment(language: str, *, package: str = "skisnow.report", folder: 
     install: Callable[..., None] = environment.install_gettext_translations  # type: ignore[attr-defined]
     install(translations(language), newstyle=True)
     return environment
-
-
-def _translate_messages(text: Callable[[object], str]) -> Callable[[Any], Any]:
-    return lambda value: text(value) if isinstance(value, Message) else value
 
 
 CITED: Final = (

@@ -25,7 +25,7 @@ from skisnow.report.run.time_figures import (
     stacked_energies,
 )
 from skisnow.report.run.track_figure import beside_track, groove_corners, run_track
-from skisnow.report.turn.figures import TimedTrack, band_of, draw_runs, loaded_ski, offsets, track_band
+from skisnow.report.turn.figures import TimedTrack, band_of, draw_runs, loaded_skis, offsets, track_band
 from skisnow.simulation.run import LOST, STORED, Run
 
 from ..runs import RADIUS, SPEED, STANCE, circle_run
@@ -218,7 +218,7 @@ def test_compared_runs_are_held_against_the_first(run: Run) -> None:
     assert now[1] == pytest.approx(now[0] / 2.0)
     assert depth.get_ylim()[0] > 0.0 > depth.get_ylim()[1]  # depth grows downwards
     assert "right ski" in depth.get_ylabel()
-    assert loaded_ski(run, 2.0) == 1
+    assert set(loaded_skis(run)) == {1}
 
 
 def test_offset_to_the_left_is_positive_and_ahead_is_ahead() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -13,12 +13,12 @@ import numpy.typing as npt
 
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.messages import Message
-from ..._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..._support.units import N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
 from ...campaign.records import Campaign
 from ...estimation import Analysis
-from ...estimation.regressions import DENSITY_KEY, Observations, Source
-from ...geometry import GeometryForm
+from ...estimation.hardness import Hardness, ShearStress
+from ...estimation.regressions import DENSITY_KEY, Source
 from ..formatting import counted, whole
 
 TextArray: TypeAlias = npt.NDArray[np.str_]
@@ -48,6 +48,26 @@ def texts(rows: Sequence[Json], key: str) -> TextArray:
     return np.array([row[key] for row in rows], dtype=object).astype(str)
 
 
+@dataclass(frozen=True, slots=True)
+class UsedTests:
+    """Columns of the n used experiments of one kind, in the units of the report.
+
+    used: mask of the used ones among all experiments of the kind.
+    value, interval: H_V or S_f, and its 95 % intervals, shape (n, 2): NaN unless both ends are finite.
+    site: names of their sites.
+    density: snow density there (kg/m³), NaN if unknown.
+    """
+
+    used: BoolArray
+    value: FloatArray
+    interval: FloatArray
+    site: TextArray
+    density: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+
 @dataclass(frozen=True)
 class ReportData:
     """An analysis with columns of its *used* experiments in the units of the report.
@@ -66,11 +86,6 @@ class ReportData:
     def results(self) -> Json:
         """Contents of results.json."""
         return self.analysis.results
-
-    @property
-    def geometry(self) -> GeometryForm:
-        """Wedge form that the analysis used for the tools."""
-        return self.analysis.geometry
 
     @property
     def synthetic(self) -> bool:
@@ -99,64 +114,30 @@ class ReportData:
         return rows
 
     @cached_property
-    def penetration_used(self) -> BoolArray:
-        """Mask of the used penetration experiments."""
-        analysis = self.analysis.penetration
-        return np.zeros(0, dtype=bool) if analysis is None else analysis.screened.used
+    def pressed(self) -> UsedTests:
+        """Columns of the used penetration experiments; the value is H_V (N/mm³)."""
+        part = self.analysis.penetration
+        estimates = None if part is None else (part.screened.used, part.hardness["H_V"])
+        return self._used_tests("penetration", N_PER_MM3, estimates)
 
     @cached_property
-    def shear_used(self) -> BoolArray:
-        """Mask of the used shear experiments."""
-        analysis = self.analysis.shear
-        return np.zeros(0, dtype=bool) if analysis is None else analysis.screened.used
+    def sheared(self) -> UsedTests:
+        """Columns of the used shear experiments; the value is S_f (N/mm²)."""
+        part = self.analysis.shear
+        estimates = None if part is None else (part.screened.used, part.stress)
+        return self._used_tests("shear", N_PER_MM2, estimates)
 
-    @cached_property
-    def hardness(self) -> FloatArray:
-        """H_V of the used penetration experiments (N/mm³)."""
-        analysis = self.analysis.penetration
-        return np.zeros(0) if analysis is None else analysis.hardness["H_V"].value[self.penetration_used] / N_PER_MM3
-
-    @cached_property
-    def hardness_interval(self) -> FloatArray:
-        """95 % intervals of `hardness`, shape (n, 2); NaN unless both ends are finite."""
-        analysis = self.analysis.penetration
-        intervals = np.zeros((0, 2)) if analysis is None else analysis.hardness["H_V"].interval
-        return _complete(intervals[self.penetration_used] / N_PER_MM3)
-
-    @cached_property
-    def stress(self) -> FloatArray:
-        """S_f of the used shear experiments (N/mm²)."""
-        analysis = self.analysis.shear
-        return np.zeros(0) if analysis is None else analysis.stress.value[self.shear_used] / N_PER_MM2
-
-    @cached_property
-    def stress_interval(self) -> FloatArray:
-        """95 % intervals of `stress`, shape (n, 2); NaN unless both ends are finite."""
-        analysis = self.analysis.shear
-        intervals = np.zeros((0, 2)) if analysis is None else analysis.stress.interval
-        return _complete(intervals[self.shear_used] / N_PER_MM2)
-
-    @cached_property
-    def shear_angle(self) -> FloatArray:
-        """Edge angle of the used shear experiments (rad)."""
-        tests = self.campaign.shear
-        return np.zeros(0) if tests is None else tests.edge_angle[self.shear_used]
-
-    @cached_property
-    def shear_depth(self) -> FloatArray:
-        """Plate depth e of the used shear experiments (mm)."""
-        tests = self.campaign.shear
-        return np.zeros(0) if tests is None else tests.penetration_depth[self.shear_used] / MM
-
-    @cached_property
-    def penetration_site(self) -> TextArray:
-        """Site of each used penetration experiment."""
-        return texts(self.penetration, "site")[self.penetration_used]
-
-    @cached_property
-    def shear_site(self) -> TextArray:
-        """Site of each used shear experiment."""
-        return texts(self.shear, "site")[self.shear_used]
+    def _used_tests(
+        self, kind: Source, unit: float, estimates: tuple[BoolArray, Hardness | ShearStress] | None
+    ) -> UsedTests:
+        density = self.analysis.observations[kind].columns[DENSITY_KEY]
+        if estimates is None:
+            return UsedTests(np.zeros(0, dtype=bool), np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=str), density)
+        used, values = estimates
+        ends = values.interval[used] / unit
+        ends[~np.isfinite(ends).all(axis=1)] = np.nan
+        site = texts(self.results[kind]["experiments"], "site")[used]
+        return UsedTests(used, values.value[used] / unit, ends, site, density)
 
     @cached_property
     def seating(self) -> list[Json]:
@@ -168,21 +149,6 @@ class ReportData:
     def unloaded(self) -> list[Json]:
         """Rows of all penetration experiments with readings during unloading."""
         return [row for row in self.penetration if row["n_unloading"]]
-
-    @property
-    def observations(self) -> Mapping[Source, Observations]:
-        """Used experiments with the snow at their spots, by source."""
-        return self.analysis.observations
-
-    @property
-    def penetration_density(self) -> FloatArray:
-        """Density at each used penetration experiment (kg/m³), NaN if unknown."""
-        return self.observations["penetration"].columns[DENSITY_KEY]
-
-    @property
-    def shear_density(self) -> FloatArray:
-        """Density at each used shear experiment (kg/m³), NaN if unknown."""
-        return self.observations["shear"].columns[DENSITY_KEY]
 
     @cached_property
     def sites(self) -> tuple[str, ...]:
@@ -233,9 +199,3 @@ class ReportData:
             cells = set(table.further.get("time", ())) if table is not None else set()
             days |= {match[0] for cell in cells if (match := _DATE.match(cell.strip()))}
         return (min(days), max(days)) if days else None
-
-
-def _complete(intervals: FloatArray) -> FloatArray:
-    """Intervals (n, 2) with NaN for both ends where one is not finite."""
-    complete = np.isfinite(intervals).all(axis=1, keepdims=True)
-    return np.where(complete, intervals, np.nan)

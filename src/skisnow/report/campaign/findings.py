@@ -73,12 +73,13 @@ def _missing_data(data: ReportData) -> list[str]:
         )
     if not data.shear:
         sentences.append(Message("The campaign has no shear experiments: there is no S_f."))
-    densities = np.concatenate((data.penetration_density, data.shear_density))
+    densities = np.concatenate((data.pressed.density, data.sheared.density))
     if not np.isfinite(densities).any():
         sentences.append(
             Message("No snow density is given at a used experiment: the regressions on density have no data.")
         )
-    if data.campaign.drop_cone is None and not _has_drop_cone(data):
+    tests = data.campaign.penetration
+    if data.campaign.drop_cone is None and (tests is None or not np.isfinite(tests.drop_cone_depth).any()):
         sentences.append(Message("No drop-cone test is given: the regression of H_V on drop-cone depth has no data."))
     if data.results["provenance"]["options"]["geometry"] == "paper":
         sentences.append(
@@ -88,11 +89,6 @@ def _missing_data(data: ReportData) -> list[str]:
             )
         )
     return sentences
-
-
-def _has_drop_cone(data: ReportData) -> bool:
-    tests = data.campaign.penetration
-    return tests is not None and bool(np.isfinite(tests.drop_cone_depth).any())
 
 
 def readings_used(data: ReportData) -> Markup:
@@ -112,7 +108,7 @@ def procedure_comparison(data: ReportData) -> Markup:
     """Ratio of H_V by the two procedures over the used series."""
     largest_load = numbers(data.penetration, "H_V_N_per_mm3")
     fitted = numbers(data.results["penetration"]["errors_in_depth"]["experiments"], "H_V_N_per_mm3")
-    comparable = data.penetration_used & np.isfinite(largest_load) & np.isfinite(fitted)
+    comparable = data.pressed.used & np.isfinite(largest_load) & np.isfinite(fitted)
     if not comparable.any():
         return html("")
     low, median, high = np.percentile(fitted[comparable] / largest_load[comparable], (5.0, 50.0, 95.0)).tolist()
@@ -129,7 +125,7 @@ def procedure_comparison(data: ReportData) -> Markup:
 def seating_findings(data: ReportData) -> list[Markup]:
     """Size of the depth offsets and number of those that differ from zero."""
     rows = data.seating
-    without = int(data.penetration_used.sum()) - len(rows)
+    without = int(data.pressed.used.sum()) - len(rows)
     if not rows:
         return [prose("No used series has the readings that an offset can be estimated from.")]
     half_widths = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0

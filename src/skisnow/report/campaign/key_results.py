@@ -10,7 +10,7 @@ from ..._support.messages import Message, template
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
 from ..formatting import counted, html, interval, p_equals, prose, significant, whole
-from .data import Json, ReportData, TextArray
+from .data import Json, ReportData, UsedTests
 from .model_tables import formula, model_name
 from .tables import QUANTITY
 
@@ -64,10 +64,14 @@ def own_value(data: ReportData, quantity: str) -> Json | None:
 
 def _hardness_sentence(data: ReportData) -> Markup | None:
     n = counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments")
-    used = Message("{used} of {n} used", used=whole(len(data.hardness)), n=n)
-    mean_name = Message("Snow hardness H_V: geometric mean")
-    quantity = Quantity(mean_name, "H_V", "H_V_N_per_mm3", "N/mm³", n, used, _site_count(data.penetration_site))
+    quantity = Quantity(Message("Snow hardness H_V: geometric mean"), "H_V", "H_V_N_per_mm3", "N/mm³", n, data.pressed)
     return _mean_sentence(data, quantity) if data.penetration else None
+
+
+def _stress_sentence(data: ReportData) -> Markup | None:
+    n = counted(len(data.shear), "{count} shear experiment", "{count} shear experiments")
+    quantity = Quantity(Message("Failure shear stress S_f: mean"), "S_f", "S_f_N_per_mm2", "N/mm²", n, data.sheared)
+    return _mean_sentence(data, quantity) if data.shear else None
 
 
 def _unloading_sentence(data: ReportData) -> Markup | None:
@@ -90,18 +94,6 @@ def _unloading_sentence(data: ReportData) -> Markup | None:
         ends=interval(row["unloading_ratio_interval"]),
         n=whole(row["n"]),
     )
-
-
-def _stress_sentence(data: ReportData) -> Markup | None:
-    n = counted(len(data.shear), "{count} shear experiment", "{count} shear experiments")
-    used = Message("{used} of {n} used", used=whole(len(data.stress)), n=n)
-    mean_name = Message("Failure shear stress S_f: mean")
-    quantity = Quantity(mean_name, "S_f", "S_f_N_per_mm2", "N/mm²", n, used, _site_count(data.shear_site))
-    return _mean_sentence(data, quantity) if data.shear else None
-
-
-def _site_count(sites: TextArray) -> int:
-    return len(set(sites.tolist()))
 
 
 def _displacement_sentence(data: ReportData) -> Markup | None:
@@ -162,19 +154,23 @@ def _of_sites(rows: list[Json], key: str, unit: str) -> Markup:
 
 
 class Quantity(NamedTuple):
-    """A measured quantity: name of its mean, symbol, key, unit, and numbers of its experiments and sites in words."""
+    """A measured quantity: name of its mean, symbol, key, unit, number of its experiments in words, the used ones."""
 
     mean_name: str
     symbol: str
     key: str
     unit: str
     experiments: str
-    used: str
-    sites: int
+    tests: UsedTests
+
+    @property
+    def used(self) -> str:
+        """Number of the used experiments among all, in words."""
+        return Message("{used} of {n} used", used=whole(len(self.tests)), n=self.experiments)
 
 
 def _mean_sentence(data: ReportData, quantity: Quantity) -> Markup:
-    row, sites = own_value(data, quantity.key), quantity.sites
+    row, sites = own_value(data, quantity.key), len(set(quantity.tests.site.tolist()))
     if row is None:
         return prose(
             "None of the {n} can be used, so there is no {symbol}.",

@@ -19,7 +19,7 @@ from ...campaign import Campaign
 from ...estimation import Analysis
 from ...estimation.results import results_pieces
 from ..figures.drawing import Drawing, LeftOut, Picture
-from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
+from ..figures.figure_files import Progress, picture_files, render_pictures, silent, write_picture
 from ..figures.style import SiteStyle, site_styles
 from ..formatting import days_words, moment_words, significant
 from ..sheet import bibtex, cited_text, render_template
@@ -63,11 +63,7 @@ _ONLY_WITH_TESTS: Final = ("sites", "published", "marks", "experiments")
 
 
 def write_report(
-    analysis: Analysis,
-    out: str | Path,
-    *,
-    language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    analysis: Analysis, out: str | Path, *, language: str = ENGLISH, progress: Progress | None = None
 ) -> Path:
     """Write report.html, figures/, tables/ and results.json of an analysed campaign.
 
@@ -122,7 +118,7 @@ def write_report(
     return out / "report.html"
 
 
-def _write(data: ReportData, stage: Path, language: str, report: Callable[[str], None]) -> list[str]:
+def _write(data: ReportData, stage: Path, language: str, report: Progress) -> list[str]:
     """Write all files to the stage; returns the files of an earlier report that must be removed."""
     report("tables of the report")
     all_tables = campaign_tables(data)
@@ -159,29 +155,24 @@ def page(
 ) -> str:
     """HTML of the report, with styles, figures and tables inside."""
     with in_language(language):
-        return render_template("report.html", **_page_contents(data, tables, pictures, missing))
-
-
-def _page_contents(
-    data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]
-) -> dict[str, Any]:
-    return dict(
-        **_frame(data),
-        key_results=key_results(data),
-        caveats=caveats(data),
-        readings_used=readings_used(data),
-        procedures_compared=procedure_comparison(data),
-        seating_found=seating_findings(data),
-        unloading_found=unloading_findings(data),
-        regression_sentences=regression_sentences(data),
-        tables=defaultdict(Markup, tables_html(tables)),
-        pictures=pictures,
-        missing=missing,
-        figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
-        matplotlib_version=version("matplotlib"),
-        cited=cited_text(),
-        bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
-    )
+        return render_template(
+            "report.html",
+            **_frame(data),
+            key_results=key_results(data),
+            caveats=caveats(data),
+            readings_used=readings_used(data),
+            procedures_compared=procedure_comparison(data),
+            seating_found=seating_findings(data),
+            unloading_found=unloading_findings(data),
+            regression_sentences=regression_sentences(data),
+            tables=defaultdict(Markup, tables_html(tables)),
+            pictures=pictures,
+            missing=missing,
+            figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
+            matplotlib_version=version("matplotlib"),
+            cited=cited_text(),
+            bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
+        )
 
 
 def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
@@ -267,7 +258,7 @@ def drawers_of(campaign: Campaign) -> tuple[Callable[[ReportData, Sequence[SiteS
 
 
 def campaign_figures(
-    data: ReportData, *, language: str = ENGLISH, progress: Callable[[str], None] | None = None
+    data: ReportData, *, language: str = ENGLISH, progress: Progress = silent
 ) -> tuple[list[Picture], list[LeftOut]]:
     """Figures for which the campaign has data, and the reasons for the missing ones."""
     missing: list[LeftOut] = []

@@ -19,7 +19,6 @@ from ..figures.style import (
     SINGLE_MM,
     SitePlot,
     SiteStyle,
-    error_bars,
     legend_below,
     logarithmic,
     mark_synthetic,
@@ -70,7 +69,7 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
     panels[0].set_ylabel(Message("load $F$ (N)"))
     mark_synthetic(data, panels[-1])
     legend_below(figure, [handles[style.label] for style in styles if style.label in handles])
-    n_other = int(data.penetration_used.sum()) - sum(map(len, series))
+    n_other = int(data.pressed.used.sum()) - sum(map(len, series))
     caption = _force_caption(counts, n_other, wide_range=wide_range)
     names = [_angle_name(angle) for angle in angles]
     alt = Message(
@@ -82,7 +81,7 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
 
 def shown_angles(data: ReportData) -> list[float]:
     """The flat tool and the most frequent edge angle (degrees) of the used experiments."""
-    angles = np.array([row["edge_angle_deg"] for row in data.penetration], dtype=float)[data.penetration_used]
+    angles = np.array([row["edge_angle_deg"] for row in data.penetration], dtype=float)[data.pressed.used]
     edged, counts = np.unique(angles[angles > 0], return_counts=True)
     # of equally frequent angles the one nearest to the paper's 45°
     best = sorted(zip(-counts, np.abs(edged - 45.0), edged, strict=True))[:1]
@@ -141,7 +140,7 @@ def _fitted_law(
     assert penetration is not None  # there are tests
     max_depth = float(series.penetration_depth.max())
     e = np.geomspace(max_depth * 1e-3, max_depth, 60) if wide_range else np.linspace(0.0, max_depth, 60)
-    tool = in_form(data.campaign.tools[series.tool], data.geometry)
+    tool = in_form(data.campaign.tools[series.tool], data.analysis.geometry)
     return law_of_series(tool, series.edge_angle, float(penetration.hardness["H_V"].value[index]), e)
 
 
@@ -180,7 +179,7 @@ def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
         )
     offset, intervals = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
     label = Message("depth offset $\\delta$ (mm)")
-    plot, handles = _plot_against_hardness(rows, offset, intervals, label, styles)
+    plot = _plot_against_hardness(data, styles, rows, offset, intervals, label)
     plot.axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     if np.abs(offset).max() > 10.0 * _THRESHOLD_MM:
         plot.axes.set_yscale("symlog", linthresh=_THRESHOLD_MM, linscale=0.8)
@@ -193,7 +192,7 @@ def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
         all=whole(len(rows)),
     )
     alt = Message("Depth offset in millimetres with intervals against snow hardness, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
+    return Drawing(name, caption, alt, plot.finish(), points=len(rows))
 
 
 def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
@@ -206,7 +205,7 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
         )
     ratio, intervals = numbers(rows, "unloading_ratio"), pairs(rows, "unloading_ratio_interval")
     label = Message("unloading ratio $k_\\mathrm{{u}}/H_\\mathrm{{V}}$")
-    plot, handles = _plot_against_hardness(rows, ratio, intervals, label, styles)
+    plot = _plot_against_hardness(data, styles, rows, ratio, intervals, label)
     if intervals.max() > 10.0 * intervals.min():
         plot.axes.set_yscale("log")
         plot.axes.yaxis.set_major_formatter(plain_number)
@@ -216,47 +215,51 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
         n=whole(len(rows)),
     )
     alt = Message("Unloading ratio with intervals against snow hardness, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
+    return Drawing(name, caption, alt, plot.finish(), points=len(rows))
 
 
 def _plot_against_hardness(
-    rows: Sequence[Json], values: FloatArray, intervals: FloatArray, label: str, styles: Sequence[SiteStyle]
-) -> tuple[SitePlot, list[Line2D]]:
-    """Points with intervals over the hardness of their series, and the legend handles."""
-    hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
-    plot = SitePlot.new(_HARDNESS, label, height_mm=80.0)
-    error_bars(plot.axes, hardness, intervals, site, styles)
-    handles = scatter(plot.axes, hardness, values, site, styles, size=3.0)
+    data: ReportData,
+    styles: Sequence[SiteStyle],
+    rows: Sequence[Json],
+    values: FloatArray,
+    ends: FloatArray,
+    label: str,
+) -> SitePlot:
+    """Points with intervals ``ends`` over the hardness of their series."""
+    hardness = numbers(rows, "H_V_N_per_mm3")
+    plot = SitePlot.new(data, styles, _HARDNESS, label, height_mm=80.0)
+    plot.draw(hardness, values, texts(rows, "site"), ends=ends, size=3.0)
     if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
         plot.axes.set_xscale("log")
         plot.axes.xaxis.set_major_formatter(plain_number)
-    return plot, handles
+    return plot
 
 
 def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Snow hardness with its interval against density (Fig 6)."""
     name, title = "fig06_hardness_density", Message("Snow hardness against density")
-    if len(data.hardness) == 0:
+    if not len(data.pressed):
         return LeftOut(name, title, Message("no penetration experiment is used"))
-    if not np.isfinite(data.penetration_density).any():
+    if not np.isfinite(data.pressed.density).any():
         return LeftOut(name, title, Message("the campaign gives no snow density at its penetration experiments"))
-    plot = SitePlot.new(Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
-    handles, n = _draw_hardness(plot.axes, data, data.penetration_density, styles)
+    plot = SitePlot.new(data, styles, Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
+    n = _draw_hardness(plot, data.pressed.density)
     caption = prose(
         "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment."
     ) + _p_sentence(data.regression("H_V_N_per_mm3", "snow_density_kg_per_m3"))
     alt = Message("Snow hardness against snow density with intervals, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=n)
+    return Drawing(name, caption, alt, plot.finish(), points=n)
 
 
 def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Snow hardness with its interval against the mean force of a SnowMicroPen at the same place."""
-    name, force = "hardness_mean_force", data.observations["penetration"].columns[PEN_FORCE_KEY]
+    name, force = "hardness_mean_force", data.analysis.observations["penetration"].columns[PEN_FORCE_KEY]
     if not np.isfinite(force).any():
         reason = Message("no used recording is at the site of a used penetration experiment")
         return LeftOut(name, Message("Snow hardness against the SnowMicroPen's mean force"), reason)
-    plot = SitePlot.new(Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
-    handles, n = _draw_hardness(plot.axes, data, force, styles)
+    plot = SitePlot.new(data, styles, Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
+    n = _draw_hardness(plot, force)
     if spans_a_decade(force[np.isfinite(force)]):
         logarithmic(plot.axes, "x", force)
     settings = data.results["snow_micro_pen"]
@@ -267,20 +270,17 @@ def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawin
         last=settings["to_depth_mm"],
     ) + _p_sentence(data.regression("H_V_N_per_mm3", PEN_FORCE_KEY))
     alt = Message("Snow hardness against the SnowMicroPen's mean force with intervals, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=n)
+    return Drawing(name, caption, alt, plot.finish(), points=n)
 
 
-def _draw_hardness(
-    axes: Axes, data: ReportData, x: FloatArray, styles: Sequence[SiteStyle]
-) -> tuple[list[Line2D], int]:
-    """H_V with intervals against another quantity; returns the legend handles and the number of points."""
-    finite = np.isfinite(x)
-    hardness, intervals, site = data.hardness[finite], data.hardness_interval[finite], data.penetration_site[finite]
-    error_bars(axes, x[finite], intervals, site, styles)
-    handles = scatter(axes, x[finite], hardness, site, styles)
+def _draw_hardness(plot: SitePlot, x: FloatArray) -> int:
+    """Draw H_V with intervals against another quantity; returns the number of points."""
+    finite, tests = np.isfinite(x), plot.data.pressed
+    hardness, intervals = tests.value[finite], tests.interval[finite]
+    plot.draw(x[finite], hardness, tests.site[finite], ends=intervals)
     if spans_a_decade(hardness):
-        logarithmic(axes, "y", np.concatenate((hardness, intervals[np.isfinite(intervals)])))
-    return handles, len(hardness)
+        logarithmic(plot.axes, "y", np.concatenate((hardness, intervals[np.isfinite(intervals)])))
+    return len(hardness)
 
 
 def _p_sentence(row: Json | None) -> Markup:

@@ -10,12 +10,12 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ..._support.messages import Message
-from ..._support.units import CONFIDENCE, DEGREE
+from ..._support.units import CONFIDENCE, DEGREE, MM
 from ...estimation.regressions import HARDNESS_KEY, STRESS_KEY
 from ...forces.shear import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
 from ..figures.drawing import Drawing, LeftOut
-from ..figures.style import BLACK, SitePlot, SiteStyle, error_bars, logarithmic, masks, scatter, spans_a_decade
+from ..figures.style import BLACK, SitePlot, SiteStyle, logarithmic, masks, spans_a_decade
 from ..formatting import counted, interval, p_equals, prose, significant
 from .data import Json, ReportData, numbers
 
@@ -80,21 +80,22 @@ def draw_line(axes: Axes, line: RegressionLine, *, colour: str, x_unit: float = 
 def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Failure shear force against plate depth (Fig 7)."""
     name = "fig07_shear_force_depth"
-    if len(data.stress) == 0:
+    if not len(data.sheared):
         return LeftOut(name, Message("Failure shear force against depth"), Message("no shear experiment is used"))
-    force = numbers(data.shear, "F_t_N")[data.shear_used]
-    plot = SitePlot.new(
-        Message("penetration depth $e$ (mm)"), Message("failure shear force $F_\\mathrm{{t}}$ (N)"), height_mm=76.0
-    )
-    handles = scatter(plot.axes, data.shear_depth, force, data.shear_site, styles)
-    plot.start_at_zero("x", data.shear_depth, 1.06)
+    tests, used = data.campaign.shear, data.sheared.used
+    assert tests is not None  # some are used
+    force, depth = numbers(data.shear, "F_t_N")[used], tests.penetration_depth[used] / MM
+    labels = Message("penetration depth $e$ (mm)"), Message("failure shear force $F_\\mathrm{{t}}$ (N)")
+    plot = SitePlot.new(data, styles, *labels, height_mm=76.0)
+    plot.draw(depth, force, data.sheared.site)
+    plot.start_at_zero("x", depth, 1.06)
     plot.start_at_zero("y", force, 1.08)
     caption = prose(
         "Failure shear force F_t against penetration depth of the plate (the paper's Fig. 7), by site. With one plate, "
         "points of equal S_f lie on a straight line through the origin."
     )
     alt = Message("Failure shear force in newtons against depth in millimetres, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(force))
+    return Drawing(name, caption, alt, plot.finish(), points=len(force))
 
 
 def varied_sites(data: ReportData) -> list[Json]:
@@ -112,11 +113,10 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
     if not rows:
         reason = Message("no site has five used shear experiments at three edge angles")
         return LeftOut(name, Message("Failure shear stress against edge angle"), reason)
-    chosen = np.isin(data.shear_site, [row["group"] for row in rows])
-    theta, stress, site = data.shear_angle[chosen], data.stress[chosen], data.shear_site[chosen]
-    plot = SitePlot.new(_ANGLE, _STRESS, height_mm=70.0)
-    error_bars(plot.axes, theta / DEGREE, data.stress_interval[chosen], site, styles)
-    handles = scatter(plot.axes, theta / DEGREE, stress, site, styles)
+    chosen = np.isin(data.sheared.site, [row["group"] for row in rows])
+    theta, stress, site = _edge_angles(data)[chosen], data.sheared.value[chosen], data.sheared.site[chosen]
+    plot = SitePlot.new(data, styles, _ANGLE, _STRESS, height_mm=70.0)
+    plot.draw(theta / DEGREE, stress, site, ends=data.sheared.interval[chosen])
     for style, mask in masks(styles, site):
         for row in rows:
             if row["group"] in style.sites and _is_significant(row):
@@ -132,7 +132,13 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
         judgements=judgements,
     )
     alt = Message("Failure shear stress against edge angle in degrees, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
+    return Drawing(name, caption, alt, plot.finish(), points=len(stress))
+
+
+def _edge_angles(data: ReportData) -> FloatArray:
+    """Edge angle of each used shear experiment (rad)."""
+    tests = data.campaign.shear
+    return np.zeros(0) if tests is None else tests.edge_angle[data.sheared.used]
 
 
 def _p_value_text(row: Json) -> str:
@@ -167,15 +173,15 @@ def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         reason = Message("no site has five used shear experiments at three edge angles with a positive stress at 90°")
         return LeftOut(name, Message("Shear stress against machining theory"), reason)
     row, upright = softest
-    at_site = data.shear_site == row["group"]
-    stress = data.stress[at_site]
-    plot = SitePlot.new(_ANGLE, r"$F_\mathrm{t}/(L\,e)$ (N/mm²)", height_mm=70.0)
-    handles = scatter(plot.axes, data.shear_angle[at_site] / DEGREE, stress, data.shear_site[at_site], styles)
+    at_site = data.sheared.site == row["group"]
+    stress = data.sheared.value[at_site]
+    plot = SitePlot.new(data, styles, _ANGLE, r"$F_\mathrm{t}/(L\,e)$ (N/mm²)", height_mm=70.0)
+    plot.draw(_edge_angles(data)[at_site] / DEGREE, stress, data.sheared.site[at_site])
     theta = np.linspace(2.0, 90.0, 400)
     for friction, width, label in _CURVES:
         curve = cutting_stress(upright / 2.0, theta * DEGREE, transverse_friction=friction)
         plot.axes.plot(theta, curve, color=BLACK, linewidth=width, zorder=2)
-        handles.append(Line2D([], [], color=BLACK, linewidth=width, label=label))
+        plot.handles.append(Line2D([], [], color=BLACK, linewidth=width, label=label))
     _angle_axis(plot.axes)
     plot.axes.set_ylim(0.0, _HEADROOM * max(float(stress.max()), upright))
     caption = prose(
@@ -187,20 +193,21 @@ def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         upright=significant(upright),
     )
     alt = Message("Shear stress of one site against edge angle, with two curves of machining.")
-    return Drawing(name, caption, alt, plot.finish(data, handles))
+    return Drawing(name, caption, alt, plot.finish())
 
 
 def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Failure shear stress against density with the regression line over all sites (Fig 10)."""
     name, title = "fig10_stress_density", Message("Failure shear stress against density")
-    if len(data.stress) == 0:
+    if not len(data.sheared):
         return LeftOut(name, title, Message("no shear experiment is used"))
-    finite = np.isfinite(data.shear_density)
+    tests = data.sheared
+    finite = np.isfinite(tests.density)
     if not finite.any():
         return LeftOut(name, title, Message("the campaign gives no snow density at its shear experiments"))
-    density, stress = data.shear_density[finite], data.stress[finite]
-    plot = SitePlot.new(Message("snow density $\\rho$ (kg/m³)"), _STRESS, height_mm=76.0)
-    handles = scatter(plot.axes, density, stress, data.shear_site[finite], styles)
+    density, stress = tests.density[finite], tests.value[finite]
+    plot = SitePlot.new(data, styles, Message("snow density $\\rho$ (kg/m³)"), _STRESS, height_mm=76.0)
+    plot.draw(density, stress, tests.site[finite])
     row = data.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
     if row is not None:
         draw_line(plot.axes, regression_line(row, density), colour=BLACK, dashed=not _is_significant(row))
@@ -208,7 +215,7 @@ def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | L
     caption = prose("Failure shear stress S_f against density (the paper's Fig. 10), by site.")
     caption += _line_in_words(row) if row else ""
     alt = Message("Failure shear stress against snow density with a regression line, by site.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
+    return Drawing(name, caption, alt, plot.finish(), points=len(stress))
 
 
 def _line_in_words(row: Json) -> Markup:
@@ -235,13 +242,14 @@ def _line_in_words(row: Json) -> Markup:
 
 def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Failure shear stress against snow hardness, one point for each spot with both (Fig 11)."""
-    name, spots = "fig11_stress_hardness", data.observations["spots"]
+    name, spots = "fig11_stress_hardness", data.analysis.observations["spots"]
     if not spots.site:
         reason = Message("no spot has both a used penetration and a used shear experiment")
         return LeftOut(name, Message("Failure shear stress against snow hardness"), reason)
     hardness, stress = spots.columns[HARDNESS_KEY], spots.columns[STRESS_KEY]
-    plot = SitePlot.new(Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)"), _STRESS, height_mm=70.0)
-    handles = scatter(plot.axes, hardness, stress, np.array(spots.site), styles)
+    xlabel = Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")
+    plot = SitePlot.new(data, styles, xlabel, _STRESS, height_mm=70.0)
+    plot.draw(hardness, stress, np.array(spots.site))
     if spans_a_decade(hardness):
         logarithmic(plot.axes, "x", hardness)
     plot.start_at_zero("y", stress, 1.08)
@@ -254,4 +262,4 @@ def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
     if row and row["p"] is not None:
         caption += prose(" Linear regression: {p}.", p=p_equals(row["p"]))
     alt = Message("Failure shear stress against snow hardness, one point for each spot.")
-    return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
+    return Drawing(name, caption, alt, plot.finish(), points=len(stress))

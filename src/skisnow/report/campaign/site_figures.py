@@ -66,11 +66,11 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     row_mm = _TWO_LINES_MM if any("\n" in name for name in names.values()) else _ROW_MM
     figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + row_mm * most)
     figure.set_layout_engine("constrained", wspace=0.08)
-    points = len(data.hardness) + len(data.stress)
+    points = len(data.pressed) + len(data.sheared)
     for place, (key, label) in enumerate(panels, start=1):
         axes = figure.add_subplot(1, len(panels), place)
-        single = (data.hardness, data.penetration_site) if key == _SITES[0][0] else (data.stress, data.shear_site)
-        _panel(axes, rows[key], names, *single, points)
+        tests = data.pressed if key == _SITES[0][0] else data.sheared
+        _panel(axes, rows[key], names, tests.value, tests.site, points)
         axes.set_xlabel(label)
     mark_synthetic(data, axes)
     caption = prose(

@@ -8,14 +8,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
+from ..._support.arrays import BoolArray
 from ..._support.messages import Message
 from ...campaign import QUALITY_FLAGS
 from ...estimation.comparisons import own_mean
 from ...snow.published import hand_hardness
 from ...snow.published.moessner_2013 import SNOW_DENSITY_RANGE
 from ..table import Column, Table, record_table
-from .data import Json, ReportData, TextArray
+from .data import Json, ReportData, UsedTests
 from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .series_tables import (
     displacement_sites_table,
@@ -56,13 +56,12 @@ def sites_table(data: ReportData) -> Table:
     n_shear = Counter(row["site"] for row in data.shear)
     rows = []
     for site in data.sites:
-        in_penetration, in_shear = data.penetration_site == site, data.shear_site == site
-        hardness = _mean_and_range(data.hardness[in_penetration], data.penetration_site[in_penetration], geometric=True)
-        stress = _mean_and_range(data.stress[in_shear], data.shear_site[in_shear], geometric=False)
+        hardness = _mean_and_range(data.pressed, data.pressed.site == site, geometric=True)
+        stress = _mean_and_range(data.sheared, data.sheared.site == site, geometric=False)
         rows.append((site, n_penetration[site], *hardness, n_shear[site], *stress))
     if len(data.sites) > 1:
-        hardness = _mean_and_range(data.hardness, data.penetration_site, geometric=True)
-        stress = _mean_and_range(data.stress, data.shear_site, geometric=False)
+        hardness = _mean_and_range(data.pressed, slice(None), geometric=True)
+        stress = _mean_and_range(data.sheared, slice(None), geometric=False)
         rows.append((Message("all sites"), len(data.penetration), *hardness, len(data.shear), *stress))
     return Table(
         "sites",
@@ -87,8 +86,9 @@ def sites_table(data: ReportData) -> Table:
     )
 
 
-def _mean_and_range(values: FloatArray, sites: TextArray, *, geometric: bool) -> tuple[Any, ...]:
+def _mean_and_range(tests: UsedTests, chosen: BoolArray | slice, *, geometric: bool) -> tuple[Any, ...]:
     """Number of values, mean with interval, minimum and maximum."""
+    values, sites = tests.value[chosen], tests.site[chosen]
     if len(values) == 0:
         return 0, (None, None), None
     mean = own_mean(values, sites.tolist(), geometric=geometric)

@@ -6,7 +6,7 @@ import io
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from matplotlib.figure import Figure
 
@@ -16,6 +16,13 @@ from ..._support.staging import require_writable, write_file
 from .drawing import FORMS, UNDATED, Drawing, Picture, render
 from .figure_data import figure_data
 from .style import journal_style, local_axes
+
+Progress: TypeAlias = Callable[[str], None]
+"""Callback for progress messages."""
+
+
+def silent(_message: str) -> None:
+    """Progress callback that ignores the message."""
 
 
 def picture_files(names: Iterable[str]) -> list[str]:
@@ -29,7 +36,7 @@ def write_pictures(
     *,
     every: Sequence[str],
     language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = silent,
 ) -> list[Picture]:
     """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
 
@@ -50,10 +57,7 @@ def write_pictures(
 
 
 def render_pictures(
-    drawings: Iterable[Drawing],
-    *,
-    language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    drawings: Iterable[Drawing], *, language: str = ENGLISH, progress: Progress = silent
 ) -> list[Picture]:
     """Render drawings in the house style.
 
@@ -64,15 +68,10 @@ def render_pictures(
     pictures = []
     with journal_style(), in_language(language):
         for drawing in drawings:
-            if progress is not None:
-                progress(Message("figure {name}", name=drawing.name))
+            progress(Message("figure {name}", name=drawing.name))
             local_axes(drawing.figure)
             pictures.append(render(drawing))
     return pictures
-
-
-def silent(_message: str) -> None:
-    """Progress callback that ignores the message."""
 
 
 def write_picture(picture: Picture, folder: Path) -> None:

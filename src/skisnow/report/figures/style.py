@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import matplotlib
@@ -39,6 +39,7 @@ BROWN: Final = "#8C510A"
 SAND: Final = "#D8B365"
 COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 """Colours of Okabe and Ito (2008) without yellow, which is too pale on white paper."""
+LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
 MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X", "<", "p", ">", "*", "h", "d", "8")
 NAMED_SITES: Final = 14
 _LETTER_MM: Final = 1.4
@@ -94,6 +95,11 @@ def new_figure(*, width_mm: float = SINGLE_MM, height_mm: float = 68.0) -> Figur
     return Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
 
 
+def line_style(place: int) -> dict[str, Any]:
+    """Colour and line style of the line with this number, from 0."""
+    return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
+
+
 @dataclass(frozen=True, slots=True)
 class SiteStyle:
     """Colour and symbol of a site, or of several ``sites`` that share them."""
@@ -107,9 +113,8 @@ class SiteStyle:
 def site_styles(data: ReportData) -> tuple[SiteStyle, ...]:
     """Style of each site; of many sites, those with fewest experiments share one grey style."""
     counts = dict.fromkeys(data.sites, 0)
-    for names in (data.penetration_site, data.shear_site):
-        for name, count in zip(*np.unique(names, return_counts=True), strict=True):
-            counts[str(name)] += int(count)
+    for name, count in zip(*np.unique([*data.pressed.site, *data.sheared.site], return_counts=True), strict=True):
+        counts[str(name)] += int(count)
     order = sorted(data.sites, key=lambda site: (-counts[site], site))
     named = sorted(order[: NAMED_SITES if len(order) > NAMED_SITES + 1 else NAMED_SITES + 1])
     styles = [
@@ -171,16 +176,6 @@ def thinning_sentence(count: int) -> str:
 def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
     line_style: dict[str, Any] = {"marker": style.marker, "color": style.colour, "markerfacecolor": "none"}
     return line_style if size is None else line_style | {"markersize": size}
-
-
-def error_bars(axes: Axes, x: FloatArray, ends: FloatArray, site: TextArray, styles: Sequence[SiteStyle]) -> None:
-    """Draw intervals behind the points, unless there are too many to distinguish."""
-    if len(x) > RASTERISE_FROM:
-        return
-    closed = np.isfinite(ends).all(axis=1)
-    for style, mask in masks(styles, site):
-        chosen = mask & closed
-        axes.vlines(x[chosen], ends[chosen, 0], ends[chosen, 1], color=style.colour, linewidth=0.5, alpha=0.5, zorder=2)
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
@@ -253,27 +248,47 @@ def local_axes(figure: Figure) -> None:
 
 @dataclass(frozen=True)
 class SitePlot:
-    """One panel of points by site, finished with title and legend."""
+    """One panel of points by site, finished with title and legend.
 
+    handles: handles of the legend, filled by the methods that draw.
+    """
+
+    data: ReportData
+    styles: Sequence[SiteStyle]
     figure: Figure
     axes: Axes
+    handles: list[Line2D] = field(default_factory=list)
 
     @classmethod
-    def new(cls, xlabel: str, ylabel: str, *, height_mm: float) -> SitePlot:
+    def new(
+        cls, data: ReportData, styles: Sequence[SiteStyle], xlabel: str, ylabel: str, *, height_mm: float
+    ) -> SitePlot:
         """An empty panel with its labels."""
         figure = new_figure(height_mm=height_mm)
         axes = figure.add_subplot()
         axes.set_xlabel(xlabel)
         axes.set_ylabel(ylabel)
-        return cls(figure, axes)
+        return cls(data, styles, figure, axes)
+
+    def draw(
+        self, x: FloatArray, y: FloatArray, site: TextArray, *, ends: FloatArray | None = None,
+        size: float | None = None,
+    ) -> None:  # fmt: skip
+        """Draw points by site, with their intervals ``ends``, shape (n, 2), behind them."""
+        if ends is not None and len(x) <= RASTERISE_FROM:  # more cannot be distinguished
+            closed = np.isfinite(ends).all(axis=1)
+            for style, mask in masks(self.styles, site):
+                (low, high), at, colour = ends[mask & closed].T, x[mask & closed], style.colour
+                self.axes.vlines(at, low, high, color=colour, linewidth=0.5, alpha=0.5, zorder=2)
+        self.handles.extend(scatter(self.axes, x, y, site, self.styles, size=size))
 
     def start_at_zero(self, which: str, values: FloatArray, margin: float) -> None:
         """Limits from 0 to a margin above the maximum."""
         set_limits = self.axes.set_xlim if which == "x" else self.axes.set_ylim
         set_limits(0.0, float(values.max()) * margin or 1.0)
 
-    def finish(self, data: ReportData, handles: Sequence[Artist]) -> Figure:
+    def finish(self) -> Figure:
         """The figure with its legend, marked if the data are synthetic."""
-        mark_synthetic(data, self.axes)
-        legend_below(self.figure, handles)
+        mark_synthetic(self.data, self.axes)
+        legend_below(self.figure, self.handles)
         return self.figure

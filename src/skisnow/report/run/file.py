@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.io import netcdf_file
 
 from ..._support.arrays import FloatArray
@@ -150,8 +149,6 @@ def _data_variable(variable: RunVariable, run: Run) -> tuple[tuple[str, ...], An
     return variable.dimensions, finite, {"units": variable.units, "long_name": variable.meaning}
 
 
-Values: TypeAlias = Callable[["Run"], npt.ArrayLike]
-
 TIME, SKI, STATION, PIECE = "time", "ski", "station", "piece"
 
 
@@ -161,7 +158,8 @@ class RunVariable:
 
     name, dimensions, units: as in the file; units are SI in the notation of UDUNITS, angles in rad.
     meaning: its long_name.
-    values: function that returns the array of a run in this unit.
+    source: attribute of a run, or attribute of one of its parts such as ``skis.depth``, with the array in this unit.
+    component: index of the last axis of that array (default: the whole array).
     axis: "T", "X", "Y" or "Z" of a coordinate, otherwise empty.
     coordinates: names of the variables with its place in space.
     """
@@ -170,218 +168,172 @@ class RunVariable:
     dimensions: tuple[str, ...]
     units: str
     meaning: str
-    values: Values
+    source: str
+    component: int | None = None
     axis: str = ""
     coordinates: str = ""
+
+    def values(self, run: Run) -> FloatArray:
+        """Array of a run; NaN for the boots of a run without boots, 0 for an energy that it does not have."""
+        part_name, _, name = self.source.rpartition(".")
+        if part_name == "energies":
+            return run.energies.get(name, np.zeros(len(run.time)))
+        part = getattr(run, part_name) if part_name else run
+        if part is None:
+            return np.full((len(run.time), len(SKI_NAMES))[: len(self.dimensions)], np.nan)
+        values = np.asarray(getattr(part, name))
+        return values if self.component is None else values[..., self.component]
 
 
 _PATH: Final = "x y z"
 _EDGE: Final = "ski_x ski_y ski_z"
 _GROOVE: Final = "groove_x groove_y groove_z"
+_AT_BOOT: Final = (TIME, SKI)
+_ALONG_SKI: Final = (TIME, SKI, STATION)
 
 
-def _vector_variables(
-    stem: str,
-    dimensions: tuple[str, ...],
-    units: str,
-    meaning: str,
-    values: Callable[[Run], FloatArray],
-    **further: str,
-) -> list[RunVariable]:
-    """Variables of the components x, y and z of a vector."""
-
-    def part(place: int) -> Values:
-        return lambda run: values(run)[..., place]
-
+def _vector(
+    stem: str, dimensions: tuple[str, ...], units: str, meaning: str, source: str, *,
+    names: Sequence[str] = "xyz", **further: str,
+) -> list[RunVariable]:  # fmt: skip
+    """Variables of the components of a vector."""
     return [
-        RunVariable(stem.format(name), dimensions, units, meaning.format(name), part(place), **further)
-        for place, name in enumerate("xyz")
+        RunVariable(stem.format(name), dimensions, units, meaning.format(name), source, component, **further)
+        for component, name in enumerate(names)
     ]
 
 
-def _energy_variables() -> list[RunVariable]:
-    def of(name: str) -> Values:
-        """Function that takes this energy from a run."""
-        return lambda run: run.energies[name]
+def _coordinates() -> list[RunVariable]:
+    place = (
+        "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a profile), y left, z up"
+    )
+    return [
+        RunVariable("time", (TIME,), "s", "time since the start", "time", axis="T"),
+        RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
+                    "skis.station"),
+        *(replace(part, axis=part.name.upper()) for part in _vector("{}", (TIME,), "m", place, "place")),
+        *_vector("ski_{}", _AT_BOOT, "m", "loaded edge under the boot, on the snow surface: {}", "skis.track"),
+        *_vector("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
+                 "groove.middle"),
+    ]  # fmt: skip
 
-    stored = {
+
+def _motion() -> list[RunVariable]:
+    return [
+        *_vector("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}", "velocity",
+                 coordinates=_PATH),
+        RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", "speed", coordinates=_PATH),
+        RunVariable("heading", (TIME,), "rad", "heading of the skis from the fall line, positive to the left",
+                    "heading", coordinates=_PATH),
+        RunVariable("turn_radius", (TIME,), "m",
+                    "path's turn radius, positive to the left; missing where the path is straight", "turn_radius",
+                    coordinates=_PATH),
+        RunVariable("attitude", (TIME, "space_axis", "sledge_axis"), "1",
+                    "rotation matrix from the sledge's axes (forward, left, up) to those of space (x, y, z)",
+                    "attitude"),
+    ]  # fmt: skip
+
+
+def _skis() -> list[RunVariable]:
+    along = (
+        ("edge_depth", "m", "depth of the edge that is down below the undisturbed surface; negative: above it"),
+        ("force_per_length", "N m-1", "normal force of the snow on the ski per length"),
+        ("shear_per_length", "N m-1", "force of the snow on the ski across its edge, per length, positive to the left"),
+        ("bending", "m", "deflection of the base away from the snow, against the boot"),
+        ("twist", "rad", "growth of the edge angle against that at the boot"),
+    )
+    total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
+    return [
+        RunVariable("depth", _AT_BOOT, "m",
+                    "depth of the loaded edge under the boot below the undisturbed surface; negative: above it",
+                    "skis.depth", coordinates=_EDGE),
+        *(RunVariable(name, _ALONG_SKI, units, meaning, f"skis.{name}", coordinates=_EDGE)
+          for name, units, meaning in along),
+        *_vector("snow_force_{}", _AT_BOOT, "N", total, "skis.force"),
+        RunVariable("total_force", _AT_BOOT, "N", "magnitude of the total force of the snow on the ski",
+                    "skis.total_force"),
+        RunVariable("normal_force", _AT_BOOT, "N", "its part along the snow's normal", "skis.normal_force"),
+    ]  # fmt: skip
+
+
+def _boots() -> list[RunVariable]:
+    place = "middle of the boot's sole at the level of the base: {}"
+    variables = _vector("boot_{}", _AT_BOOT, "m", place, "boots.place")
+    angles = {
+        "edge_angle": "edge angle, positive: left edge down",
+        "pitch": "pitch, positive: tip up",
+        "heading": "heading, positive to the left",
+    }
+    for i, (name, meaning) in enumerate(angles.items()):
+        variables.append(RunVariable(f"boot_{name}", _AT_BOOT, "rad", f"of the boot: {meaning}", "boots.angles", i))
+    for what, unit in (("force", "N"), ("moment", "N m")):
+        stem, meaning = f"boot_{what}_{{}}", f"{what} of the ski on its boot, in"
+        own = ("ahead", "left", "up")
+        variables += _vector(stem, _AT_BOOT, unit, f"{meaning} space: {{}}", f"boots.{what}")
+        variables += _vector(stem, _AT_BOOT, unit, f"{meaning} the boot's axes: {{}}", f"boots.own_{what}", names=own)
+    return variables
+
+
+def _energies() -> list[RunVariable]:
+    meanings = {
         "kinetic": "kinetic energy",
         "potential": "potential energy in the field of gravity",
         "elastic_ski": "elastic energy of both skis",
         "elastic_snow": "elastic energy of the snow: of pressure, of the shear at the edges, of friction that sticks",
         "delayed_snow": "energy stored in the delayed depth of the snow under the skis",
-    }
-    lost = {
         "penetration": "work lost to the grooves in the snow since the start",
         "shear": "work lost to side-slip of the skis since the start",
         "friction": "work lost to glide friction since the start",
         "drag": "work lost to air drag since the start",
         "damping": "work lost to damping of the skis since the start",
         "snow_damping": "work lost to damping and delayed depth of the snow since the start",
-    }
-    variables = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
-    variables += [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
-    supplied = {
         "boots": "work given since the start by what moves the boots",
         "push": "work given since the start by a push on the body",
     }
-    return variables + [
-        RunVariable(f"given_{name}", (TIME,), "J", supplied[name], _energy_over_time(name)) for name in GIVEN
+    stems = dict.fromkeys(STORED, "{}_energy") | dict.fromkeys(LOST, "lost_{}") | dict.fromkeys(GIVEN, "given_{}")
+    return [
+        RunVariable(stem.format(name), (TIME,), "J", meanings[name], f"energies.{name}") for name, stem in stems.items()
     ]
 
 
-def _energy_over_time(name: str) -> Values:
-    return lambda run: run.energies.get(name, np.zeros(len(run.time)))
-
-
-def _boot_variables() -> list[RunVariable]:
-    place = "middle of the boot's sole at the level of the base: {}"
-    variables = _vector_variables("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
-    angles = ("edge_angle", "pitch", "heading")
-    meanings = ("edge angle, positive: left edge down", "pitch, positive: tip up", "heading, positive to the left")
-    for i, (name, meaning) in enumerate(zip(angles, meanings, strict=True)):
-        variables.append(RunVariable(f"boot_{name}", (TIME, SKI), "rad", f"of the boot: {meaning}", _part("angles", i)))
-    for what, unit in (("force", "N"), ("moment", "N m")):
-        for i, axis in enumerate("xyz"):
-            meaning = f"{what} of the ski on its boot, in space: {axis}"
-            variables.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(what, i)))
-        for i, axis in enumerate(("ahead", "left", "up")):
-            meaning = f"{what} of the ski on its boot, in the boot's axes: {axis}"
-            variables.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(f"own_{what}", i)))
-    return variables
-
-
-def _boots(run: Run, name: str) -> FloatArray:
-    """A quantity of the boots (n, 2, 3); NaN for a run without boots."""
-    if run.boots is None:
-        return np.full((len(run.time), 2, 3), np.nan)
-    return np.asarray(getattr(run.boots, name))
-
-
-def _part(name: str, axis: int) -> Values:
-    """Function that returns one component of a quantity of the boots."""
-    return lambda run: _boots(run, name)[..., axis]
-
-
-def _along_skis() -> list[RunVariable]:
-    named: list[tuple[str, str, str, Values]] = [
-        ("edge_depth", "m", "depth of the edge that is down below the undisturbed surface; negative: above it",
-         lambda run: run.skis.edge_depth),
-        ("force_per_length", "N m-1", "normal force of the snow on the ski per length",
-         lambda run: run.skis.force_per_length),
-        ("shear_per_length", "N m-1", "force of the snow on the ski across its edge, per length, positive to the left",
-         lambda run: run.skis.shear_per_length),
-        ("bending", "m", "deflection of the base away from the snow, against the boot", lambda run: run.skis.bending),
-        ("twist", "rad", "growth of the edge angle against that at the boot", lambda run: run.skis.twist),
-    ]  # fmt: skip
+def _groove() -> list[RunVariable]:
+    sizes = {
+        "width": "width of the piece, across the path",
+        "depth": "deepest that the snow was pushed",
+        "residual_depth": "permanent (residual) groove depth",
+    }
+    left = "unit vector along the piece, to the left: {}"
     return [
-        RunVariable(name, (TIME, SKI, STATION), units, meaning, values, coordinates=_EDGE)
-        for name, units, meaning, values in named
-    ]
-
-
-def _snow_forces() -> list[RunVariable]:
-    total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
-    return [
-        *_vector_variables("snow_force_{}", (TIME, SKI), "N", total, lambda run: run.skis.force),
-        RunVariable("total_force", (TIME, SKI), "N", "magnitude of the total force of the snow on the ski",
-                    lambda run: run.skis.total_force),
-        RunVariable("normal_force", (TIME, SKI), "N", "its part along the snow's normal",
-                    lambda run: run.skis.normal_force),
+        *_vector("groove_left_{}", (PIECE,), "1", left, "groove.left", coordinates=_GROOVE),
+        *(RunVariable(f"groove_{name}", (PIECE,), "m", meaning, f"groove.{name}", coordinates=_GROOVE)
+          for name, meaning in sizes.items()),
     ]  # fmt: skip
 
 
-def _coordinate_variables() -> list[RunVariable]:
-    down = (
-        "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a profile), y left, z up"
-    )
-    edge = "loaded edge under the boot, on the snow surface: {}"
-    return [
-        RunVariable("time", (TIME,), "s", "time since the start", lambda run: run.time, axis="T"),
-        RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
-                    lambda run: run.skis.station),
-        *(_axis_variable(variable) for variable in _vector_variables("{}", (TIME,), "m", down, lambda run: run.place)),
-        *_vector_variables("ski_{}", (TIME, SKI), "m", edge, lambda run: run.skis.track),
-        *_vector_variables("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
-                lambda run: run.groove.middle),
-    ]  # fmt: skip
-
-
-def _axis_variable(variable: RunVariable) -> RunVariable:
-    return RunVariable(
-        variable.name, variable.dimensions, variable.units, variable.meaning, variable.values, variable.name.upper()
-    )
-
-
-def _over_time() -> list[RunVariable]:
-    turned = "path's turn radius, positive to the left; missing where the path is straight"
-    return [
-        *_vector_variables("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}",
-                lambda run: run.velocity, coordinates=_PATH),
-        RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", lambda run: run.speed,
-                    coordinates=_PATH),
-        RunVariable("heading", (TIME,), "rad", "heading of the skis from the fall line, positive to the left",
-                    lambda run: run.heading, coordinates=_PATH),
-        RunVariable("turn_radius", (TIME,), "m", turned, lambda run: run.turn_radius, coordinates=_PATH),
-        RunVariable("attitude", (TIME, "space_axis", "sledge_axis"), "1",
-                    "rotation matrix from the sledge's axes (forward, left, up) to those of space (x, y, z)",
-                    lambda run: run.attitude),
-        RunVariable("depth", (TIME, SKI), "m",
-                    "depth of the loaded edge under the boot below the undisturbed surface; negative: above it",
-                    lambda run: run.skis.depth, coordinates=_EDGE),
-    ]  # fmt: skip
-
-
-def _groove_variables() -> list[RunVariable]:
-    return [
-        *_vector_variables("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}",
-                lambda run: run.groove.left, coordinates=_GROOVE),
-        RunVariable("groove_width", (PIECE,), "m", "width of the piece, across the path",
-                    lambda run: run.groove.width, coordinates=_GROOVE),
-        RunVariable("groove_depth", (PIECE,), "m", "deepest that the snow was pushed", lambda run: run.groove.depth,
-                    coordinates=_GROOVE),
-        RunVariable("groove_residual_depth", (PIECE,), "m", "permanent (residual) groove depth",
-                    lambda run: run.groove.residual_depth, coordinates=_GROOVE),
-    ]  # fmt: skip
-
-
-RUN_VARIABLES: Final = (
-    *_coordinate_variables(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energy_variables(),
-    *_groove_variables(),
-)  # fmt: skip
+RUN_VARIABLES: Final = (*_coordinates(), *_motion(), *_skis(), *_boots(), *_energies(), *_groove())
 """Variables of run.nc except the names of the skis, in the order of the file."""
 
 
-def _balance_variables() -> tuple[RunVariable, ...]:
-    def of(name: str) -> Values:
-        """Function that takes this quantity of the balance from a run."""
-        return lambda run: getattr(run.balance, name)
-
-    leans = {
-        "lean": "lean of the line from the boots' middle to the centre of mass, positive to the left",
-        "pressure_lean": "lean of the line from the centre of pressure to the centre of mass, positive to the left",
-        "balanced_lean": "lean in balance with speed and path radius of the centre of mass, positive to the left",
-        "rolling_lean": "the same with what the body's roll and the rise of its centre of mass take",
-        "angulation": "mean edge angle of the boots less the lean",
-    }
-    lengths = {
-        "leg": "length from the boots' middle to the centre of mass",
-        "pressure": "centre of pressure from the boots' middle, to the left",
-    }
-    centre = "centre of mass of the body: {}"
-    return (
-        *(RunVariable(name, (TIME,), "rad", meaning, of(name)) for name, meaning in leans.items()),
-        *(RunVariable(name, (TIME,), "m", meaning, of(name)) for name, meaning in lengths.items()),
-        RunVariable("load", (TIME, SKI), "N", "force of the ski on its boot along the snow's normal", of("load")),
-        *_vector_variables("centre_{}", (TIME,), "m", centre, _centre_of_mass),
-    )
+def _balance() -> list[RunVariable]:
+    named = (
+        ("lean", "rad", "lean of the line from the boots' middle to the centre of mass, positive to the left"),
+        ("pressure_lean", "rad",
+         "lean of the line from the centre of pressure to the centre of mass, positive to the left"),
+        ("balanced_lean", "rad",
+         "lean in balance with speed and path radius of the centre of mass, positive to the left"),
+        ("rolling_lean", "rad", "the same with what the body's roll and the rise of its centre of mass take"),
+        ("angulation", "rad", "mean edge angle of the boots less the lean"),
+        ("leg", "m", "length from the boots' middle to the centre of mass"),
+        ("pressure", "m", "centre of pressure from the boots' middle, to the left"),
+    )  # fmt: skip
+    return [
+        *(RunVariable(name, (TIME,), units, meaning, f"balance.{name}") for name, units, meaning in named),
+        RunVariable("load", _AT_BOOT, "N", "force of the ski on its boot along the snow's normal", "balance.load"),
+        *_vector("centre_{}", (TIME,), "m", "centre of mass of the body: {}", "boots.centre_of_mass"),
+    ]
 
 
-def _centre_of_mass(run: Run) -> FloatArray:
-    return np.full((len(run.time), 3), np.nan) if run.boots is None else run.boots.centre_of_mass
-
-
-SKIER_VARIABLES: Final = _balance_variables()
+SKIER_VARIABLES: Final = tuple(_balance())
 """Further variables of a run with a skier."""
 
 

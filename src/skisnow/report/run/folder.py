@@ -16,7 +16,7 @@ from ...simulation.run import Run
 from ...simulation.run_summary import run_gates, summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv
-from ..figures.figure_files import picture_files, silent
+from ..figures.figure_files import Progress, picture_files, silent
 from ..formatting import json_text
 from .page import FIGURES, FURTHER, REPLAY, replay_fact, write_run_report
 
@@ -32,7 +32,7 @@ def write_run(
     summary: Mapping[str, Any] | None = None,
     write_more: Callable[[Path], None] | None = None,
     language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = silent,
 ) -> Path:
     """Write all files of a run to a temporary folder and move them into place together.
 
@@ -46,9 +46,9 @@ def write_run(
     Raises ParameterError: the language is unknown.
     """
     require_language(language)
-    folder, report = Path(folder), progress or silent
+    folder = Path(folder)
     for sentence in prepare_folder(folder):
-        report(sentence)
+        progress(sentence)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
         stage.stale += [*_STALE, *(path.name for path in folder.glob(_MOMENTS))]
@@ -59,7 +59,7 @@ def write_run(
             write_file(stage.path / GATES, gates_csv(result))
         if write_more is not None:
             write_more(stage.path)
-        page = write_run_report(run, contents, stage.path, language=language, progress=report)
+        page = write_run_report(run, contents, stage.path, language=language, progress=progress)
     return folder / page.name
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
@@ -21,7 +21,7 @@ from ...simulation.run_summary import run_gates, run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
 from ..figures.drawing import Picture
-from ..figures.figure_files import silent, write_pictures
+from ..figures.figure_files import Progress, silent, write_pictures
 from ..formatting import counted, html, prose, significant, whole
 from ..sheet import Header, Section, sheet
 from .drawings import run_drawings
@@ -33,6 +33,7 @@ FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 FURTHER: Final = ("course", "balance", "boots")
 """Names of the further figures of a run with a course, a skier, or moving boots."""
+_OF_SKIER: Final = {"balance": Message("Balance of the skier"), "boots": Message("Boots")}
 REPLAY: Final = "replay.html"
 """Name of the file with the replay."""
 
@@ -47,12 +48,7 @@ def _replay_link() -> Markup:
 
 
 def write_run_report(
-    run: Run,
-    summary: Mapping[str, Any],
-    folder: str | Path,
-    *,
-    language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    run: Run, summary: Mapping[str, Any], folder: str | Path, *, language: str = ENGLISH, progress: Progress = silent
 ) -> Path:
     """Write run.nc, figures/ and report.html.
 
@@ -65,12 +61,11 @@ def write_run_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    report = progress or silent
-    report("run.nc")
+    progress("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
     every = (*FIGURES, *FURTHER)
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=every, language=language, progress=report)
-    report("report.html")
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=every, language=language, progress=progress)
+    progress("report.html")
     has_replay = (folder / REPLAY).is_file()
     write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=has_replay, language=language))
     return folder / "report.html"
@@ -86,39 +81,35 @@ def run_page(
 ) -> str:
     """HTML of a run's report, with a link to the replay if there is one."""
     with in_language(language):
-        return _page(run, summary, pictures, has_replay=has_replay)
-
-
-def _page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, has_replay: bool) -> str:
-    by_name = {picture.name: [picture] for picture in pictures}
-    sections = [
-        Section("outcome", Message("Outcome"), key=outcome_sentences(run), pictures=by_name.get("track", ())),
-        *_course_section(run, by_name),
-        Section("motion", Message("Speed, heading, turn radius"), pictures=by_name.get("motion", ())),
-        *_boots_sections(by_name),
-        Section(
-            "along-skis",
-            Message("Along the skis"),
-            pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
-            tables=[skis_table(run)],
-        ),
-        Section(
-            "energies",
-            Message("Energies"),
-            pictures=by_name.get("energies", ()),
-            tables=[energies_table(dict(summary))],
-        ),
-    ]
-    if not pictures:
-        no_step = prose("The run ended before its first step; no figure can be drawn.")
-        sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[no_step])]
-    if summary.get("verification"):
-        sections.append(
-            Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
-        )
-    sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
-    sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
-    return sheet(_make_header(run, has_replay=has_replay), sections)
+        by_name = {picture.name: [picture] for picture in pictures}
+        sections = [
+            Section("outcome", Message("Outcome"), key=outcome_sentences(run), pictures=by_name.get("track", ())),
+            *_course_section(run, by_name),
+            Section("motion", Message("Speed, heading, turn radius"), pictures=by_name.get("motion", ())),
+            *(Section(name, title, pictures=by_name[name]) for name, title in _OF_SKIER.items() if name in by_name),
+            Section(
+                "along-skis",
+                Message("Along the skis"),
+                pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
+                tables=[skis_table(run)],
+            ),
+            Section(
+                "energies",
+                Message("Energies"),
+                pictures=by_name.get("energies", ()),
+                tables=[energies_table(dict(summary))],
+            ),
+        ]
+        if not pictures:
+            no_step = prose("The run ended before its first step; no figure can be drawn.")
+            sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[no_step])]
+        if summary.get("verification"):
+            sections.append(
+                Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
+            )
+        sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
+        sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
+        return sheet(_make_header(run, has_replay=has_replay), sections)
 
 
 def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
@@ -133,20 +124,19 @@ def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[
     ]
 
 
-def _boots_sections(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
-    titles = {"balance": Message("Balance of the skier"), "boots": Message("Boots")}
-    return [Section(name, title, pictures=by_name[name]) for name, title in titles.items() if name in by_name]
-
-
 def _make_header(run: Run, *, has_replay: bool) -> Header:
-    scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
+    scenario, contact = run.scenario, run.scenario.contact
+    over, snow = contact.snow_map, contact.snow
+    hardness = _value(snow.snow_hardness, None if over is None else over.hardness, N_PER_MM3, "N/mm³")
+    strength = _value(
+        snow.failure_shear_stress, None if over is None else over.failure_shear_stress, N_PER_MM2, "N/mm²"
+    )
+    ratio = significant(contact.unloading_ratio)
     facts = [
-        (
-            Message("Snow"),
-            html(f"H_V {_hardness_text(run)}, S_f {_strength_text(run)}, k_u / H_V {significant(ratio)}"),
-        ),
-        (Message("Source of the snow"), scenario.contact.snow.source),
-        *_replaced_laws(run),
+        (Message("Snow"), html(f"H_V {hardness}, S_f {strength}, k_u / H_V {ratio}")),
+        (Message("Source of the snow"), snow.source),
+        *((Message("{law}, given in Python", law=name.replace("_", " ").capitalize()), law)
+          for name, law in run.given_laws.items() if law),
         (Message("Skis"), f"{scenario.ski.name}, {_edge_in_words(run)}"),
         (Message("Computed"), f"skisnow {version('skisnow')}"),
         *([(Message("Replay"), _replay_link())] if has_replay else []),
@@ -156,7 +146,9 @@ def _make_header(run: Run, *, has_replay: bool) -> Header:
         if scenario.skier is None
         else Message("A simulated run of a skier on two flexible skis")
     )
-    return Header(kind, _title(run), facts, headline=_headline(run))
+    length, time, outcome = _number(run.run_length), _number(run.simulated_s), outcome_words(run.outcome)
+    title = Message("{length} m in {time} s: {outcome}", length=length, time=time, outcome=outcome)
+    return Header(kind, title, facts, headline=_headline(run))
 
 
 def _edge_in_words(run: Run) -> str:
@@ -201,34 +193,6 @@ def _median_and_range(sentence: str, unit: str, quantiles: Sequence[float]) -> M
     return prose(
         sentence, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
     )  # fmt: skip
-
-
-def _replaced_laws(run: Run) -> Iterator[tuple[str, str]]:
-    """Names and descriptions of the laws that replaced those of the scenario."""
-    for name, law in run.given_laws.items():
-        if law:
-            yield Message("{law}, given in Python", law=name.replace("_", " ").capitalize()), law
-
-
-def _title(run: Run) -> str:
-    return Message(
-        "{length} m in {time} s: {outcome}",
-        length=_number(run.run_length),
-        time=_number(run.simulated_s),
-        outcome=outcome_words(run.outcome),
-    )
-
-
-def _hardness_text(run: Run) -> str:
-    contact = run.scenario.contact
-    over_place = None if contact.snow_map is None else contact.snow_map.hardness
-    return _value(contact.snow.snow_hardness, over_place, N_PER_MM3, "N/mm³")
-
-
-def _strength_text(run: Run) -> str:
-    contact = run.scenario.contact
-    over_place = None if contact.snow_map is None else contact.snow_map.failure_shear_stress
-    return _value(contact.snow.failure_shear_stress, over_place, N_PER_MM2, "N/mm²")
 
 
 def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:

@@ -16,7 +16,7 @@ from ...track.course.gates_table import gates_csv
 from ...track.summary import TrackSummary, summary_dict
 from ..figures.course import course_line
 from ..figures.drawing import Drawing
-from ..figures.figure_files import picture_files, write_pictures
+from ..figures.figure_files import Progress, picture_files, silent, write_pictures
 from ..figures.style import (
     BLACK,
     BLUE,
@@ -35,7 +35,7 @@ from .figures import coloured_map, track_along, track_map
 from .summary import GPX_FILE, POINTS_FILE, TITLES, TURNS_FILE, points_csv, track_gpx, turns_csv
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ def write_track_report(
     values: Mapping[str, Any] | None = None,
     gates: CourseResult | None = None,
     language: str = ENGLISH,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = silent,
 ) -> Path:
     """Write figures, track.json, turns.csv, points.csv, and track.gpx of a track with latitude and longitude.
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ..._support.messages import ENGLISH, Message, outcome_words
@@ -25,7 +24,7 @@ from ...snow import SnowProperties
 from ...snow.from_results import snow_dict
 from ...statistics import VarianceShares, variance_shares
 from ..run.time_figures import grip_utilisation
-from .figures import FEWEST, TimedTrack, band_of, offsets
+from .figures import FEWEST, TimedTrack, band_of, loaded_skis, offsets
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -125,11 +124,6 @@ MORE_THAN_INPUTS: Final = 3
 """Minimum number of runs above the number of inputs for shares with an interval."""
 YIELDS: Final = 0.95
 """Grip utilisation above which a ski side-slips; short parts at its ends can still have grip."""
-
-
-def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
-    """Index of the ski with the larger total force at each time, shape (n,): 0 left, 1 right."""
-    return np.argmax(run.skis.total_force, axis=1)
 
 
 def afterbody_depth_ratio(run: Run) -> float | None:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from matplotlib.lines import Line2D
 
-from ..._support.arrays import FloatArray
+from ..._support.arrays import FloatArray, IntArray
 from ..._support.messages import Message
 from ..._support.units import MM
 from ...comparison.distances import arc_lengths
 from ...comparison.nearest_place import distance_from_path
 from ...scenario import Plane
-from ..figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
+from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, line_style, new_figure
 from ..formatting import figure_text
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 
@@ -140,7 +140,6 @@ def _legend_handles(count: int) -> list[Line2D]:
 
 
 _SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")
-LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
 
 
 def draw_runs(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
@@ -156,14 +155,14 @@ def draw_runs(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 62.0))
     plan = figure.add_subplot(grid[0, :])
     for place, (_, run) in enumerate(named):
-        plan.plot(run.place[:, 0], run.place[:, 1], **_line_style(place))
-        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_line_style(place)["color"])
+        plan.plot(run.place[:, 0], run.place[:, 1], **line_style(place))
+        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=line_style(place)["color"])
     plan_axes(plan, limits, profile=not isinstance(named[0][1].scenario.slope, Plane))
     _draw_distances(figure.add_subplot(grid[1, 0]), named)
     moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
     _draw_depths(figure.add_subplot(grid[1, 1]), named, moment)
     legend_below(
-        figure, [Line2D([], [], label=mathtext(name), **_line_style(place)) for place, (name, _) in enumerate(named)]
+        figure, [Line2D([], [], label=mathtext(name), **line_style(place)) for place, (name, _) in enumerate(named)]
     )
     return figure
 
@@ -177,14 +176,10 @@ def mathtext(name: str) -> str:
     return _SYMBOL.sub(r"$\1_\2$", figure_text(str(name), longest=60))
 
 
-def _line_style(place: int) -> dict[str, Any]:
-    return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
-
-
 def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
-        axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **_line_style(place))
+        axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **line_style(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(Message("distance travelled (m)"))
@@ -194,9 +189,9 @@ def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
 def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
     """Draw the depth along the ski that is more heavily loaded in the first run, for all runs at one time."""
     reference = named[0][1]
-    ski = loaded_ski(reference, moment)
+    ski = int(loaded_skis(reference)[_time_index(reference, moment)])
     for place, (_, run) in enumerate(named):
-        axes.plot(run.skis.station, run.skis.edge_depth[_time_index(run, moment), ski] / MM, **_line_style(place))
+        axes.plot(run.skis.station, run.skis.edge_depth[_time_index(run, moment), ski] / MM, **line_style(place))
     deepest = max(float(np.nanmax(run.skis.edge_depth[_time_index(run, moment), ski])) for _, run in named) / MM
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
@@ -211,6 +206,6 @@ def _time_index(run: Run, moment: float) -> int:
     return int(np.argmin(abs(run.time - moment)))
 
 
-def loaded_ski(run: Run, moment: float) -> int:
-    """Index of the ski with the larger total force at a time (s): 0 left, 1 right."""
-    return int(np.argmax(run.skis.total_force[_time_index(run, moment)]))
+def loaded_skis(run: Run) -> IntArray:
+    """Index of the ski with the larger total force at each time, shape (n,): 0 left, 1 right."""
+    return np.argmax(run.skis.total_force, axis=1)

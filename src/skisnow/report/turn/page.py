@@ -114,11 +114,10 @@ def _make_drawings(chain: TurnChain) -> Iterator[Drawing]:
 
 
 def _make_header(chain: TurnChain) -> Header:
-    nominal = next(iter(chain.runs.values()))
     facts = [
         (Message("Campaign"), chain.campaign),
         (Message("Site"), chain.site),
-        (Message("Skis"), nominal.scenario.ski.name),
+        (Message("Skis"), chain.nominal.scenario.ski.name),
         (Message("Computed"), f"skisnow {version('skisnow')}"),
     ]
     said = Message(
@@ -136,13 +135,21 @@ def _make_header(chain: TurnChain) -> Header:
 
 def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     by_name = {picture.name: picture for picture in pictures}
-    nominal = next(iter(chain.runs.values()))
     contacts = prose(
         "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
         "afterbody runs in it. The elastic contact has no history: the groove closes under the afterbody as the load "
         "passes. What that changes in this turn is listed under the key results: most where the turn needs a little "
         "more side force than elastic snow can give. {ratio}",
-        ratio=html(_ratio_in_words(chain)),
+        ratio=html(
+            Message("k_u / H_V was not measured here, nor is it published; it is a parameter.")
+            if chain.snow.unloading_ratio_interval is None
+            else Message("k_u / H_V is that of the site's unloading.")
+        ),
+    )
+    means = prose(
+        "H_V is the geometric mean over the used penetration experiments of the site, S_f the mean over its used shear "
+        "experiments, each with its 95 % interval by Student's t. Where they were measured, k_u / H_V is the harmonic "
+        "mean over the series with unloading, u_y the geometric mean over the shear tests with turning angles."
     )
     drawn = prose(
         "{count} runs with all inputs of the table below drawn at random (Latin hypercube, seed {seed}). The "
@@ -153,9 +160,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
     )
     return [
         Section("key-results", Message("Key results"), key=key_sentences(chain)),
-        Section(
-            "snow", Message("The snow that was found"), words=[_mean_method()], tables=[parameters_table(chain.snow)]
-        ),
+        Section("snow", Message("The snow that was found"), words=[means], tables=[parameters_table(chain.snow)]),
         Section(
             "contacts",
             Message("The turn with each contact"),
@@ -177,23 +182,9 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
             after=[ensemble_sentence(chain)],
         ),
         Section("meaning", Message("Meaning"), words=meaning(chain)),
-        Section("scenario", Message("Scenario"), tables=[scenario_table(scenario_values(nominal.scenario))]),
+        Section("scenario", Message("Scenario"), tables=[scenario_table(scenario_values(chain.nominal.scenario))]),
         Section("provenance", Message("Provenance"), words=[_provenance(chain)]),
     ]
-
-
-def _mean_method() -> Markup:
-    return prose(
-        "H_V is the geometric mean over the used penetration experiments of the site, S_f the mean over its used shear "
-        "experiments, each with its 95 % interval by Student's t. Where they were measured, k_u / H_V is the harmonic "
-        "mean over the series with unloading, u_y the geometric mean over the shear tests with turning angles."
-    )
-
-
-def _ratio_in_words(chain: TurnChain) -> str:
-    if chain.snow.unloading_ratio_interval is not None:
-        return Message("k_u / H_V is that of the site's unloading.")
-    return Message("k_u / H_V was not measured here, nor is it published; it is a parameter.")
 
 
 def _provenance(chain: TurnChain) -> Markup:
@@ -319,24 +310,16 @@ def shares_table(chain: TurnChain) -> Table:
             Column("aside_percent", Message("Share of the offset across"), "estimate", unit="%", digits=2),
             Column("ahead_percent", Message("Share of the offset along"), "estimate", unit="%", digits=2),
         ),
-        [*_input_rows(chain, shares), *_unexplained_rows(shares)],
+        [
+            *((row.key, (row.low, row.high), row.in_words, *_shares_of(row.key, shares)) for row in band_inputs(chain)),
+            *_unexplained_rows(shares),
+        ],
         note=Message(
             "Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
             "intervals. The rest is proportional to no input: curvature, thresholds such as an edge that loses its "
             "grip, and the interaction of inputs."
         ),
     )
-
-
-def _input_rows(chain: TurnChain, shares: BandShares | None) -> Iterator[tuple[Any, ...]]:
-    """Rows of the table of inputs: key, range, origin, shares of the variance across and along."""
-    for band_input in band_inputs(chain):
-        yield (
-            band_input.key,
-            (band_input.low, band_input.high),
-            band_input.in_words,
-            *_shares_of(band_input.key, shares),
-        )
 
 
 def _shares_of(key: str, shares: BandShares | None) -> tuple[Any, Any]:

@@ -59,7 +59,8 @@ def key_sentences(chain: TurnChain) -> list[Markup]:
     """Key sentences: snow, contacts, band, and warnings near the limit of grip."""
     contacts = [_contact_sentence(name, run) for name, run in chain.runs.items()]
     spreads = [_band_sentence(chain), *_spreads(chain), *_largest_share(chain)]
-    return [_snow_sentence(chain), *contacts, *contrast(chain), *spreads, *_warning_sentences(chain)]
+    warnings = [prose("Warning: {text}.", text=text) for text in chain.warnings]
+    return [_snow_sentence(chain), *contacts, *contrast(chain), *spreads, *warnings]
 
 
 def headline(chain: TurnChain) -> Markup:
@@ -109,10 +110,6 @@ def _spreads(chain: TurnChain) -> list[Markup]:
 def _key_list(keys: Sequence[str]) -> Markup:
     *before, last = [_in_words(key) for key in keys] or [prose("nothing")]
     return prose("{before} and {last}", before=Markup(", ").join(before), last=last) if before else last
-
-
-def _warning_sentences(chain: TurnChain) -> list[Markup]:
-    return [prose("Warning: {text}.", text=text) for text in chain.warnings]
 
 
 def _largest_share(chain: TurnChain) -> list[Markup]:
@@ -280,14 +277,12 @@ def _band_sentence(chain: TurnChain) -> Markup:
 
 
 def _band_widths(chain: TurnChain) -> tuple[float, float]:
-    nominal = next(iter(chain.runs.values()))
-    return band_width(middle_track(nominal), [run.track for run in chain.ensemble])
+    return band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
 
 
 def ensemble_sentence(chain: TurnChain) -> Markup:
     """Sentence with the numbers of runs that ended like the nominal one and that side-slipped."""
-    nominal = next(iter(chain.runs.values()))
-    alike = sum(run.outcome == nominal.outcome for run in chain.ensemble)
+    alike = sum(run.outcome == chain.nominal.outcome for run in chain.ensemble)
     slipped = sum((run.slips or 0.0) > HELD for run in chain.ensemble)
     return prose(
         "{alike} of {all} runs ended like the nominal one ({outcome}); in {slipped} of them the more heavily loaded "
@@ -296,7 +291,7 @@ def ensemble_sentence(chain: TurnChain) -> Markup:
         held=significant(100.0 * HELD, 1),
         alike=alike,
         all=len(chain.ensemble),
-        outcome=outcome_words(nominal.outcome),
+        outcome=outcome_words(chain.nominal.outcome),
     )
 
 
