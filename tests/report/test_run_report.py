@@ -11,7 +11,8 @@ from matplotlib.text import Text
 
 from skisnow._support.units import DEGREE
 from skisnow.report.figures.drawing import FORMS
-from skisnow.report.run.page import FIGURES, write_run_report
+from skisnow.report.run.folder import write_run
+from skisnow.report.run.page import FIGURES
 from skisnow.report.run.tables import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
 from skisnow.simulation.run import LOST, STORED, Run, SkiHistory
@@ -60,7 +61,7 @@ def run() -> Run:
 def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run")
     with without_figures():
-        write_run_report(run, summary_of(run), folder)
+        write_run(run, folder, summary=summary_of(run))
     return folder
 
 
@@ -72,7 +73,7 @@ def html(folder: Path) -> str:
 def test_everything_is_written(folder: Path) -> None:
     names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     figures = {f"figures/{name}.{kind}" for name in FIGURES for kind in FORMS}
-    assert names == {"run.nc", "report.html"} | figures
+    assert names == {"run.nc", "report.html", "summary.json", "track.csv"} | figures
 
 
 def test_page_needs_nothing_else(html: str) -> None:
@@ -106,7 +107,7 @@ def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -
     ahead = np.array([1.0, 0.0, 0.0])
     velocity = np.linspace(4.0, 8.0, len(run.time))[:, None] * ahead
     straight = replace(run, velocity=velocity, turn_radius=np.full(len(run.time), np.inf))
-    page = write_run_report(straight, summary_of(run), tmp_path).read_text(encoding="utf-8")
+    page = write_run(straight, tmp_path, summary=summary_of(run)).read_text(encoding="utf-8")
     (headline,) = re.findall(r'<p class="headline">(.*?)</p>', page)
     assert [number in headline for number in ("6.00", "4.20", "7.80")] == [True] * 3
 
@@ -120,7 +121,7 @@ def test_boots_that_are_moved_have_their_angles_and_forces(run: Run, html: str, 
     off = np.stack([0.0 * angle, np.sin(angle), np.cos(angle)], axis=2)
     axes = np.stack([np.broadcast_to([1.0, 0.0, 0.0], across.shape), across, off], axis=2)
     moved = replace(run, boots=replace(run.boots, axes=axes), boots_by="moved by edges.csv")
-    page = write_run_report(moved, summary_of(run), tmp_path).read_text(encoding="utf-8")
+    page = write_run(moved, tmp_path, summary=summary_of(run)).read_text(encoding="utf-8")
     assert "0° to 30°" in page
     assert "edge angle 30.0°" in html
     assert "edge angle 30.0°" not in page
@@ -141,7 +142,7 @@ def test_energies_add_up(run: Run) -> None:
 @pytest.mark.usefixtures("undrawn")
 def test_verification_is_reported_where_it_was_asked(run: Run, html: str, tmp_path: Path) -> None:
     assert "Computed again" not in html
-    write_run_report(run, summary_of(run) | {"verification": CHECKED}, tmp_path)
+    write_run(run, tmp_path, summary=summary_of(run) | {"verification": CHECKED})
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Computed again" in page
     assert "0.125" in page
@@ -149,9 +150,9 @@ def test_verification_is_reported_where_it_was_asked(run: Run, html: str, tmp_pa
 
 @pytest.mark.usefixtures("undrawn")
 def test_run_without_a_step_says_so_and_leaves_no_figure_of_another(run: Run, tmp_path: Path) -> None:
-    write_run_report(run, summary_of(run), tmp_path)
+    write_run(run, tmp_path, summary=summary_of(run))
     at_once = replace(first_rows(run, 1), outcome="airborne", remedy="Start on the snow.")
-    write_run_report(at_once, summary_of(at_once), tmp_path)
+    write_run(at_once, tmp_path, summary=summary_of(at_once))
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Start on the" in page
     assert page.count("<img") == 0
@@ -168,7 +169,7 @@ def test_run_that_did_not_stay_finite_is_drawn_up_to_there(run: Run, tmp_path: P
         "energies": dict.fromkeys(summary_of(run)["energies"]),
         "energy_balance_error": None,
     }
-    page = write_run_report(broken, summary, tmp_path).read_text(encoding="utf-8")
+    page = write_run(broken, tmp_path, summary=summary).read_text(encoding="utf-8")
     words = re.sub(r"base64,[^\"]*", "", page)
     assert "not finite" in words
     assert not re.search(r"\bnan\b", words)

@@ -23,7 +23,7 @@ from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, local_axes, site_styles
 from skisnow.report.formatting import days_words, figure_text
 from skisnow.report.pair_verdicts import run_verdict
-from skisnow.report.race import folder as gaps_report
+from skisnow.report.race.figures import gap_drawings
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
 from skisnow.report.table import Column, record_table, table_html
@@ -248,7 +248,7 @@ def test_no_text_of_german_gaps_is_left_in_english() -> None:
     names = frozenset(NAMES)
 
     def page(language: str) -> str:
-        pictures = drawn(gaps_report.gap_drawings(GAPS, NAMES), names, language)
+        pictures = drawn(gap_drawings(GAPS, NAMES), names, language)
         way = np.linspace(0.0, 40.0, 300)
         place = np.column_stack([way, 3.0 * np.sin(way / 5.0), 0.0 * way])
         tracks = [

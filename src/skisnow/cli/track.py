@@ -272,7 +272,7 @@ def _write_comparison(
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES
         pictures = [] if gaps is None else write_gaps(gaps, comparison.names, stage.path, language=language)
-        pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path, every=(), language=language)
+        pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path, language=language)
         page = comparison_page(answer, pictures, verdict=verdict, gaps=gaps, language=language)
         write_file(stage.path / "report.html", page)
         write_file(stage.path / "compare.json", f"{json_text(answer)}\n")

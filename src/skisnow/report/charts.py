@@ -59,18 +59,14 @@ def series_curves(
     curves = []
     for index in range(len(tests)):
         series = tests.series(index)
-        unloading_depth, unloading_load = _unloading_readings(tests, index)
-        depth = np.append(series.penetration_depth, unloading_depth) / MM
-        columns = (depth, np.append(series.load, unloading_load), *laws.get(index, _NOTHING))
+        depth, load = series.penetration_depth, series.load
+        if tests.unloading is not None:
+            rows = slice(*tests.unloading.first[index : index + 2].tolist())
+            depth = np.append(depth, tests.unloading.penetration_depth[rows])
+            load = np.append(load, tests.unloading.load[rows])
+        columns = (depth / MM, load, *laws.get(index, _NOTHING))
         curves.append(SeriesCurve(series.experiment, *(tuple(column.tolist()) for column in columns)))
     return tuple(curves)
-
-
-def _unloading_readings(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
-    if tests.unloading is None:
-        return _NOTHING
-    rows = slice(*tests.unloading.first[index : index + 2].tolist())
-    return tests.unloading.penetration_depth[rows], tests.unloading.load[rows]
 
 
 def _laws(

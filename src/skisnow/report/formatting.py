@@ -75,14 +75,17 @@ def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "t
     return f"[{low}{between}{high}]"
 
 
-def aligned_rows(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table for a terminal, all columns right-aligned.
+def aligned_rows(rows: Sequence[Sequence[str]], *, left: int = 0) -> list[str]:
+    """Lines of a table for a terminal; the first ``left`` columns are left-aligned, the others right-aligned.
 
     >>> aligned_rows([("gate", "time (s)"), ("1", "2.50")])
     ['gate  time (s)', '   1      2.50']
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    sides = ["<"] * left + [">"] * (len(widths) - left)
+    return [
+        "  ".join(f"{cell:{side}{width}}" for cell, side, width in zip(row, sides, widths, strict=True)) for row in rows
+    ]
 
 
 def named_rows(rows: Iterable[tuple[str, str]]) -> list[str]:

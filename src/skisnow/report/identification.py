@@ -18,7 +18,7 @@ from .._support.spreadsheet_text import csv_text, protect_from_formulas
 from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing, Picture
 from .figures.figure_files import Progress, picture_files, silent, write_pictures
-from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, ORANGE, PALE, legend_below, new_figure
+from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, MARKERS, ORANGE, PALE, legend_below, new_figure
 from .formatting import counted, figure_text, interval, json_text, prose, significant
 from .sheet import Header, Section, sheet
 from .table import Column, Table
@@ -60,7 +60,7 @@ def write_identify_report(
         write_file(stage.path / ANSWER, f"{json_text(contents)}\n")
         write_file(stage.path / "fits.csv", fits_csv(result))
         drawings, figures = _drawings(result), stage.path / "figures"
-        pictures = write_pictures(drawings, figures, every=FIGURES, language=language, progress=progress)
+        pictures = write_pictures(drawings, figures, language=language, progress=progress)
         progress("report.html")
         write_file(stage.path / "report.html", identify_page(result, pictures, language=language))
     return folder / "report.html"
@@ -245,9 +245,8 @@ def _pair(interval: Interval | None) -> list[float] | None:
     return [interval[0], interval[1]]
 
 
-_MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X")
 _LARGEST_MM, _SMALLEST_MM = 120.0, 55.0
-_MOST_RUNS: Final = 7
+_MOST_RUNS: Final = len(COLOURS)
 
 
 def draw_tracks(fits: Sequence[Fit]) -> Figure:
@@ -259,9 +258,8 @@ def draw_tracks(fits: Sequence[Fit]) -> Figure:
     axes = figure.subplots()
     handles: list[Line2D] = []
     for number, fit in enumerate(fits[:_MOST_RUNS]):
-        colour = COLOURS[number % len(COLOURS)]
+        colour, marker = COLOURS[number], MARKERS[number]
         axes.plot(fit.fitted[:, 0], fit.fitted[:, 1], color=colour, zorder=3)
-        marker = _MARKERS[number % len(_MARKERS)]
         points = axes.plot(
             fit.measured[:, 0],
             fit.measured[:, 1],
@@ -291,7 +289,7 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
     rows = figure.subplots(len(labels), 1, sharex=True, squeeze=False)[:, 0]
     handles = []
     for number, fit in enumerate(fits[:_MOST_RUNS]):
-        colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
+        colour, marker = COLOURS[number], MARKERS[number]
         for axes, label in zip(rows, labels, strict=True):
             _draw_residuals_of(axes, fit, fit.labels.index(label), colour, marker)
         handles.append(Line2D([], [], color=colour, marker=marker, markerfacecolor="none", label=figure_text(fit.name)))

@@ -138,10 +138,8 @@ def _carve_table(answers: list[Json]) -> Iterator[str]:
     for name, of in _ROWS:
         values = [of(answer) for answer in answers]
         cells.append([name, *map(_cell_text, values), *(_difference(values[0], value) for value in values[1:])])
-    widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
-    for row in cells if len(answers) > 1 else cells[1:]:
-        first, *rest = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-        yield "  ".join([first.strip().ljust(widths[0]), *rest]).rstrip()
+    lines = [line.rstrip() for line in aligned_rows(cells, left=1)]
+    yield from lines if len(answers) > 1 else lines[1:]
 
 
 def _cell_text(value: str | float | None) -> str:
@@ -186,8 +184,7 @@ def identify_summary(result: Identification) -> str:
     lines = [f"{result.scenario}: {result.outcome.replace('_', ' ')}", result.reason, ""]
     lines += [f"{name}: {kind}" for name, kind in result.data] + [""] * bool(result.data)
     rows = [_parameter_row(parameter) for parameter in result.parameters]
-    widths = [max(len(row[i]) for row in rows) for i in range(2)]
-    lines += [f"{key.ljust(widths[0])}  {value.ljust(widths[1])}  {rest}".rstrip() for key, value, rest in rows]
+    lines += [line.rstrip() for line in aligned_rows(rows, left=3)]
     correlations = list(_correlation_lines(result))
     if correlations:
         lines += ["", "correlations: " + ", ".join(correlations)]

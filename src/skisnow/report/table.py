@@ -164,7 +164,7 @@ def table_html(table: Table, *, number: int) -> Markup:
     shown = table.rows[: table.rows_in_html]
     body = Markup("\n").join(
         Markup('<tr role="row">')
-        + Markup("").join(_cell_html(column, value, index) for index, (column, value) in _numbered_cells(table, row))
+        + Markup("").join(map(_cell_html, table.columns, row, range(len(row))))
         + Markup("</tr>")
         for row in shown
     )
@@ -185,10 +185,6 @@ def table_html(table: Table, *, number: int) -> Markup:
     )
 
 
-def _numbered_cells(table: Table, row: tuple[Any, ...]) -> enumerate[tuple[Column, Any]]:
-    return enumerate(zip(table.columns, row, strict=True))
-
-
 def _header_html(column: Column) -> Markup:
     unit = Markup(" <small>{}</small>").format(html(column.unit)) if column.unit else Markup("")
     return Markup('<th scope="col" role="columnheader"{kind}>{text}{unit}</th>').format(
@@ -197,17 +193,12 @@ def _header_html(column: Column) -> Markup:
 
 
 def _cell_html(column: Column, value: Any, index: int) -> Markup:
-    content = cell_html(column, value)
+    content = Markup(formatting.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
     if index == 0:
         return Markup('<th scope="row" role="rowheader">{}</th>').format(content)
     named = f"{column.header} ({column.unit})" if column.unit else str(column.header)
     kind = Markup(' class="n"') if column.numeric else Markup("")
     return Markup('<td role="cell"{} data-name="{}">{}</td>').format(kind, named, content)
-
-
-def cell_html(column: Column, value: Any) -> Markup:
-    """HTML of the content of a cell."""
-    return Markup(formatting.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
 
 
 def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:

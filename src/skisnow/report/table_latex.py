@@ -87,10 +87,10 @@ def _header(column: Column) -> str:
 
 def _column(column: Column, values: Sequence[Any]) -> list[str]:
     """Cells of a column; plain numbers if they are aligned at the decimal point."""
-    plain = _plain_numbers(column, values)
+    plain, absent = _plain_numbers(column, values), formatting.ABSENT["latex"]
     if plain is None:
-        return [_cell_latex(column, value) for value in values]
-    return [f"{{{formatting.ABSENT['latex']}}}" if text is None else text for text in plain]
+        return [absent if value is None else _SET[column.kind](value, column.digits) for value in values]
+    return [f"{{{absent}}}" if text is None else text for text in plain]
 
 
 def _plain_numbers(column: Column, values: Sequence[Any]) -> list[str | None] | None:
@@ -127,10 +127,6 @@ def _width(cells: Sequence[str]) -> int:
 
 def _count_letters(cell: str) -> int:
     return len(_COMMAND.sub("", cell))
-
-
-def _cell_latex(column: Column, value: Any) -> str:
-    return formatting.ABSENT["latex"] if value is None else _SET[column.kind](value, column.digits)
 
 
 def _estimate_latex(value: tuple[float | None, Any], digits: int) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.report.race.figures import gate_gaps_drawing, last_words
+from skisnow.report.race.figures import gap_drawings, last_words
 from skisnow.report.race.folder import gaps_text
 from skisnow.report.track.page import page_of_folders
 from skisnow.track.course import Course, CourseResult, Gate, MovingPoint, passages
@@ -312,7 +312,7 @@ def test_terminal_and_page_tell_the_same(pair: tuple[Path, Path]) -> None:
 
 def test_the_figure_has_a_point_for_each_gate_that_both_crossed(pair: tuple[Path, Path]) -> None:
     gaps = present(read_gate_gaps(*pair))
-    drawing = gate_gaps_drawing(gaps, ("mine", "theirs"))
+    (drawing,) = gap_drawings(gaps, ("mine", "theirs"))
     above, below = drawing.figure.axes
     drawn = max((line.get_xydata().tolist() for line in above.lines), key=lambda points: points[-1][0])  # type: ignore[union-attr]
     assert drawn == [[0.0, pytest.approx(0.2)], [2.0, pytest.approx(-0.1)]]

@@ -91,14 +91,11 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
 
 def _line_label(row: Json, data: ReportData) -> str:
     selected = data.results["penetration"]["selected"]
-    text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {_model_label(row)}"
+    terms = "$b = 1$" if row["b"] == "one" else f"$b$ {FORMS[row['b']]}"
+    if row["a"] != "none":
+        terms = f"$a$, $b$ {FORMS[row['b']]}"
+    text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {terms}"
     return f"▸ {text}" if selected and selected["id"] == row["id"] else text
-
-
-def _model_label(row: Json) -> str:
-    if row["a"] == "none":
-        return "$b = 1$" if row["b"] == "one" else f"$b$ {FORMS[row['b']]}"
-    return f"$a$, $b$ {FORMS[row['b']]}"
 
 
 def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001

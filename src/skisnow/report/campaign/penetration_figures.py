@@ -57,7 +57,8 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
     figure = new_figure(width_mm=DOUBLE_MM if len(angles) > 1 else SINGLE_MM, height_mm=80.0)
     panels = figure.subplots(1, len(angles), squeeze=False, sharey=True)[0]
     handles: dict[str, Line2D] = {}
-    series = [_series_at(data, angle) for angle in angles]
+    rows = list(enumerate(data.penetration))
+    series = [[i for i, row in rows if row["used"] and row["edge_angle_deg"] == angle] for angle in angles]
     drawn = [_evenly_spaced(indices, data) for indices in series]
     counts = [(angle, len(some), len(all_)) for angle, some, all_ in zip(angles, drawn, series, strict=True)]
     max_depths = [np.array([tests.series(i).penetration_depth.max() for i in some]) for some in drawn]
@@ -90,10 +91,6 @@ def shown_angles(data: ReportData) -> list[float]:
 
 def _angle_name(angle: float) -> str:
     return "ϑ = 0°" if angle == 0 else str(Message("edged, ϑ = {angle:.4g}°", angle=angle))
-
-
-def _series_at(data: ReportData, angle: float) -> list[int]:
-    return [i for i, row in enumerate(data.penetration) if row["used"] and row["edge_angle_deg"] == angle]
 
 
 def _evenly_spaced(indices: list[int], data: ReportData) -> list[int]:

@@ -143,7 +143,9 @@ def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | L
     every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for axes, (key, label) in zip(every, panels, strict=True):
         for colour, profile in lines:
-            axes.plot(_shown(profile, key), profile.depth / MM, color=colour, linewidth=0.6, alpha=0.8)
+            values = getattr(profile, key)  # a force in the noise of the air has no place on a logarithmic axis
+            positive = np.where(values > 0.0, values, np.nan)
+            axes.plot(positive, profile.depth / MM, color=colour, linewidth=0.6, alpha=0.8)
         for site, (depth, density) in samples.items() if key == "snow_density" else ():
             axes.plot(density, depth / MM, "o-", color=colours[site], markersize=3.0, linewidth=0.8)
         axes.set_xlabel(label)
@@ -187,9 +189,3 @@ def _samples_by_site(samples: DensitySamples | None) -> dict[str, tuple[FloatArr
         rows = rows[np.argsort(samples.sample_depth[rows])]
         by_site[name] = samples.sample_depth[rows], samples.snow_density[rows]
     return by_site
-
-
-def _shown(profile: DepthProfile, key: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Values of a panel; a force in the noise of the air has no place on a logarithmic axis."""
-    values = getattr(profile, key)
-    return np.where(values > 0.0, values, np.nan)

@@ -12,6 +12,7 @@ from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.collections import Collection
 from matplotlib.colors import to_rgba_array
@@ -130,17 +131,11 @@ def _render_as(form: Form, drawing: Drawing) -> bytes:
         engine = drawing.figure.get_layout_engine()
         if engine is not None:
             engine.execute(drawing.figure)
-            _set_no_engine(drawing.figure)
+            # with any engine, even the one called "none", each file would be drawn twice
+            with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+                drawing.figure.set_layout_engine(None)
         drawing.figure.savefig(content, format=form, metadata=UNDATED[form], **options)
     return content.getvalue()
-
-
-def _set_no_engine(figure: Figure) -> None:
-    """Remove the layout engine. With any engine, even the one called "none", each file would be drawn twice."""
-    from matplotlib import rc_context
-
-    with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
-        figure.set_layout_engine(None)
 
 
 _COLOUR_BAR = "<colorbar>"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -31,18 +31,12 @@ def picture_files(names: Iterable[str]) -> list[str]:
 
 
 def write_pictures(
-    drawings: Iterator[Drawing],
-    folder: Path,
-    *,
-    every: Sequence[str],
-    language: str = ENGLISH,
-    progress: Progress = silent,
+    drawings: Iterable[Drawing], folder: Path, *, language: str = ENGLISH, progress: Progress = silent
 ) -> list[Picture]:
     """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
 
     drawings: the drawings of the report.
     folder: folder of the files, created if necessary.
-    every: names of all figures that such a report can have; files of those without a drawing are removed.
     language, progress: see `render_pictures`.
     Returns: the pictures, for a page.
     Raises OutputError: a file cannot be written.
@@ -50,9 +44,6 @@ def write_pictures(
     pictures = render_pictures(drawings, language=language, progress=progress)
     for picture in pictures:
         write_picture(picture, folder)
-    for name in set(every) - {picture.name for picture in pictures}:
-        for ending in FORMS:
-            (folder / f"{name}.{ending}").unlink(missing_ok=True)
     return pictures
 
 

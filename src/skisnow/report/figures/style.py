@@ -226,6 +226,12 @@ def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def label_time(axes: Axes, time: FloatArray) -> None:
+    """Label an axis of time, and limit it to the times (s)."""
+    axes.set_xlim(float(time[0]), float(time[-1]))
+    axes.set_xlabel(Message("time (s)"))
+
+
 def plain_number(value: float, _place: float | None = None) -> str:
     """Label of a tick: 0.05 instead of 5 × 10⁻², with a minus sign."""
     if value != 0 and not 1e-4 <= abs(value) < 1e5:

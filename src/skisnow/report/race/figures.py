@@ -15,7 +15,7 @@ from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMI
 from ..formatting import figure_text, prose
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -110,24 +110,20 @@ MOST_NAMES = 26
 """Maximum number of gate names on the axis; of more gates, every k-th has its name."""
 
 
-def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawing:
-    """Figure with its caption; ``names`` of the run and of the run that it is compared with."""
+def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Drawing]:
+    """Figure with its caption if both crossed a gate; ``names`` of the run and of the run that it is compared with."""
+    if all(gap.gap is None for gap in gaps):
+        return
     alt = Message(
         "Gap in time at each gate and time lost between gates, {own} against {other}.", own=names[0], other=names[1]
     )
-    if any(gap.gap is not None for gap in gaps):
-        alt = joined([alt, last_words(gaps, names)])
-    return Drawing(
-        "gate_gaps",
-        prose(
-            "(a) Gap of {own} to {other} at each gate, both from their starts. (b) Time lost since the gate before "
-            "that both crossed. Above 0 {own} is behind or loses.",
-            own=names[0], other=names[1],
-        ),
-        alt,
-        gate_gaps_figure(gaps, names),
-        wide=True,
+    caption = prose(
+        "(a) Gap of {own} to {other} at each gate, both from their starts. (b) Time lost since the gate before "
+        "that both crossed. Above 0 {own} is behind or loses.",
+        own=names[0], other=names[1],
     )  # fmt: skip
+    alt = joined([alt, last_words(gaps, names)])
+    yield Drawing("gate_gaps", caption, alt, gate_gaps_figure(gaps, names), wide=True)
 
 
 def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> Message:

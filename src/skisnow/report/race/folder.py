@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,12 +15,12 @@ from ...racing import QuickestLine, Score, Worth, write_line
 from ...simulation.run import Run
 from ...track.course.gates_table import GAP_COLUMNS, GateGap, gap_rows, gaps_csv
 from ..figures.course import run_course
-from ..figures.drawing import FORMS, Drawing, Picture
+from ..figures.drawing import FORMS, Picture
 from ..figures.figure_files import write_figure, write_pictures
 from ..formatting import aligned_rows, html, json_text, prose
 from ..sheet import Section
 from ..table import Column, Table
-from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines, race_worth
+from .figures import gap_drawings, gate_gaps_figure, last_words, race_lines, race_worth
 
 SUMMARY = "race.json"
 
@@ -96,7 +96,7 @@ def write_gaps(
 
     Raises OutputError: a file cannot be written.
     """
-    pictures = write_pictures(gap_drawings(gaps, names), folder, every=(), language=language)
+    pictures = write_pictures(gap_drawings(gaps, names), folder, language=language)
     write_file(folder / GAPS_CSV, gaps_csv(gaps))  # the whole table, instead of the points that the figure shows
     return pictures
 
@@ -105,12 +105,6 @@ def gaps_section(gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Se
     """Section of a page with the time lost from gate to gate, in the current language."""
     key = [html(_result_sentence(gaps, names))]
     return Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[gaps_table(gaps, names)])
-
-
-def gap_drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:
-    """Figure of the time lost from gate to gate, if both crossed a gate."""
-    if _crossed_by_both(gaps):
-        yield gate_gaps_drawing(gaps, names)
 
 
 def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:

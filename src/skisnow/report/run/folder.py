@@ -16,11 +16,13 @@ from ...simulation.run import Run
 from ...simulation.run_summary import run_gates, summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv
-from ..figures.figure_files import Progress, picture_files, silent
+from ..figures.figure_files import Progress, picture_files, silent, write_pictures
 from ..formatting import json_text
-from .page import FIGURES, FURTHER, REPLAY, replay_fact, write_run_report
+from .drawings import run_drawings
+from .file import write_run_file
+from .page import FIGURES, FURTHER, REPLAY, replay_fact, run_page
 
-SUMMARY, GATES = "summary.json", "gates.csv"
+SUMMARY, GATES, PAGE = "summary.json", "gates.csv", "report.html"
 _STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY, "replay.glb")
 _MOMENTS: Final = "replay-*s.glb"
 
@@ -36,7 +38,7 @@ def write_run(
 ) -> Path:
     """Write all files of a run to a temporary folder and move them into place together.
 
-    folder: output folder, created if necessary; other files in it stay.
+    folder: output folder, created if necessary. Figures of an earlier run are replaced or removed; other files stay.
     summary: contents of summary.json (default: those of `summary_dict`).
     write_more: function that writes further files of the run into the temporary folder.
     language: language of the page and the figures (en, de).
@@ -59,13 +61,17 @@ def write_run(
             write_file(stage.path / GATES, gates_csv(result))
         if write_more is not None:
             write_more(stage.path)
-        page = write_run_report(run, contents, stage.path, language=language, progress=progress)
-    return folder / page.name
+        progress("run.nc")
+        write_run_file(run, contents["scenario"], stage.path / "run.nc", provenance=contents["provenance"])
+        pictures = write_pictures(run_drawings(run), stage.path / "figures", language=language, progress=progress)
+        progress(PAGE)
+        has_replay = (stage.path / REPLAY).is_file()
+        write_file(stage.path / PAGE, run_page(run, contents, pictures, has_replay=has_replay, language=language))
+    return folder / PAGE
 
 
 MOST_BYTES: Final = 1 << 26
 
-PAGE: Final = "report.html"
 _FACTS: Final = re.compile(r'(<dl class="facts">\n(?:<dt>.*</dd>\n)*)(</dl>)')
 _LANGUAGE: Final = re.compile(r'<html lang="([a-z]+)">')
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
 
 from ..._support.messages import ENGLISH, Message, in_language, local_number, outcome_words, template
-from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
 from ...geometry.surfaces import Grid
@@ -21,11 +19,8 @@ from ...simulation.run_summary import run_gates, run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
 from ..figures.drawing import Picture
-from ..figures.figure_files import Progress, silent, write_pictures
 from ..formatting import counted, html, prose, significant, whole
 from ..sheet import Header, Section, sheet
-from .drawings import run_drawings
-from .file import write_run_file
 from .tables import energies_table, gates_table, scenario_table, skis_table, verification_table
 
 Json = dict[str, Any]
@@ -45,30 +40,6 @@ def replay_fact() -> Markup:
 
 def _replay_link() -> Markup:
     return Markup('<a href="{}">{}</a>').format(REPLAY, str(Message("the run in three dimensions")))
-
-
-def write_run_report(
-    run: Run, summary: Mapping[str, Any], folder: str | Path, *, language: str = ENGLISH, progress: Progress = silent
-) -> Path:
-    """Write run.nc, figures/ and report.html.
-
-    summary: contents of summary.json, with ``verification`` if the run was repeated.
-    folder: output folder, created if necessary. Figures of an earlier run are replaced or removed; other files stay.
-    language: language of the page and the figures (en, de).
-    progress: callback for progress messages.
-    Returns: Path of report.html, which is written last.
-    Raises OutputError: a file cannot be written.
-    """
-    folder = Path(folder)
-    require_writable(folder)
-    progress("run.nc")
-    write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    every = (*FIGURES, *FURTHER)
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=every, language=language, progress=progress)
-    progress("report.html")
-    has_replay = (folder / REPLAY).is_file()
-    write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=has_replay, language=language))
-    return folder / "report.html"
 
 
 def run_page(

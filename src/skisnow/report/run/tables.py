@@ -55,7 +55,11 @@ def scenario_table(values: Json) -> Table:
             Column("unit", Message("Unit"), "text"),
             Column("meaning", Message("Meaning"), "text"),
         ),
-        [(name, _text(value), *_unit_and_meaning(name)) for name, value in by_full_name(values)],
+        [
+            (name, _text(value), key.unit if key else "", Message(key.meaning) if key else "")
+            for name, value in by_full_name(values)
+            for key in [SCENARIO_KEYS.get(name)]
+        ],
     )
 
 
@@ -70,11 +74,6 @@ def by_full_name(values: Json) -> Iterator[tuple[str, Any]]:
             yield from ((f"{name}.{key}", cell) for key, cell in value.items())
         else:
             yield name, value
-
-
-def _unit_and_meaning(name: str) -> tuple[str, str]:
-    key = SCENARIO_KEYS.get(name)
-    return ("", "") if key is None else (key.unit, Message(key.meaning))
 
 
 def _text(value: Any) -> str | None:

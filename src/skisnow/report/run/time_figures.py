@@ -28,6 +28,7 @@ from ..figures.style import (
     SAND,
     SKY,
     VERMILLION,
+    label_time,
     legend_below,
     new_figure,
 )
@@ -55,8 +56,7 @@ def run_motion(run: Run) -> Figure:
     heading.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     heading.set_ylabel(Message("heading (°)\nleft of the fall line +"))
     _draw_radius(radius, run)
-    radius.set_xlabel(Message("time (s)"))
-    radius.set_xlim(float(run.time[0]), float(run.time[-1]))
+    label_time(radius, run.time)
     figure.align_ylabels()
     return figure
 
@@ -127,8 +127,7 @@ def _draw_stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tupl
     axes.stackplot(
         run.time, [shares[name] for name in names], colors=[_STYLES[name][0] for name in names], linewidth=0.0
     )
-    axes.set_xlim(float(run.time[0]), float(run.time[-1]))
-    axes.set_xlabel(Message("time (s)"))
+    label_time(axes, run.time)
     axes.set_ylabel(Message("energy (J)"))
 
 
@@ -167,8 +166,7 @@ def run_balance(run: Run) -> Figure:
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     for axes in (leans, totals):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
-    sides.set_xlabel(Message("time (s)"))
-    sides.set_xlim(float(run.time[0]), float(run.time[-1]))
+    label_time(sides, run.time)
     figure.align_ylabels()
     return figure
 
@@ -201,8 +199,7 @@ def run_boots(run: Run) -> Figure:
         axes.set_ylabel(label)
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2, frameon=False)
-    panels[-1].set_xlabel(Message("time (s)"))
-    panels[-1].set_xlim(float(run.time[0]), float(run.time[-1]))
+    label_time(panels[-1], run.time)
     figure.align_ylabels()
     return figure
 
@@ -217,10 +214,9 @@ def run_grip(run: Run) -> Figure:
         axes.plot(run.time, net[:, ski], color=colour, label=SKIS[ski])
         axes.plot(run.time, gross[:, ski], color=colour, linewidth=0.7, linestyle=dotted)
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=dashed)
-    axes.set_xlim(float(run.time[0]), float(run.time[-1]))
+    label_time(axes, run.time)
     axes.set_ylim(-0.02, max(1.12, 1.05 * float(np.nanmax(gross, initial=1.0))))
     axes.set_ylabel(Message("grip utilisation of\nthe ski (1: side-slip)"))
-    axes.set_xlabel(Message("time (s)"))
     handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
     handles += [
         Line2D([], [], color=BLACK, label=Message("net")),

@@ -90,8 +90,14 @@ def _with_space(limits: tuple[float, float, float, float]) -> tuple[float, float
     return x_low, x_high, y_low - 0.4 * lacking, y_high + 0.6 * lacking
 
 
-def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile: bool = False) -> None:
-    """Set equal scales, x to the right and y up, and draw an arrow down the fall line."""
+def plan_axes(
+    axes: Axes,
+    limits: tuple[float, float, float, float],
+    *,
+    profile: bool = False,
+    labels: tuple[str, str] | None = None,
+) -> None:
+    """Set equal scales, x to the right and y up, and draw an arrow down the fall line without other labels."""
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(limits[0], limits[1])
     axes.set_ylim(limits[2], limits[3])
@@ -100,6 +106,9 @@ def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile:
     )
     axes.set_ylabel(Message("to the left $y$ (m)"))
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
+    if labels is not None:
+        axes.set(xlabel=labels[0], ylabel=labels[1])
+        return
     axes.annotate(
         "", (0.21, 1.035), (0.08, 1.035), xycoords="axes fraction",  # right of the panel's letter
         arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0},

@@ -56,8 +56,7 @@ def track_map(summary: TrackSummary) -> Figure:
 def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Figure:
     """Draw the places from above, coloured by speed, or by the signed curvature with radii as labels."""
     figure, axes = _new_map(summary, 3.0 * _SMALLEST_MM)
-    numbers = drawn_points(0, len(summary.track) - 1)
-    numbers = numbers[summary.track.usable[numbers]]
+    numbers = _usable_points(summary, 0, len(summary.track) - 1)
     values = summary.motion.speed if what == "speed" else _ridden_curvature(summary)
     place, joined = summary.track.place[numbers, :2], np.diff(summary.motion.smoothed.part[numbers]) == 0
     pieces, middle = np.stack([place[:-1], place[1:]], axis=1), 0.5 * (values[numbers[:-1]] + values[numbers[1:]])
@@ -111,10 +110,14 @@ def drawn_points(first: int, last: int) -> IntArray:
     return np.unique(np.linspace(first, last, min(last - first + 1, MOST_DRAWN)).round().astype(np.int64))
 
 
+def _usable_points(summary: TrackSummary, first: int, last: int) -> IntArray:
+    numbers = drawn_points(first, last)
+    return numbers[summary.track.usable[numbers]]
+
+
 def _draw_line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_style: object) -> None:
     """Draw a line through the usable points with breaks at gaps."""
-    numbers = drawn_points(first, last)
-    numbers = numbers[summary.track.usable[numbers]]
+    numbers = _usable_points(summary, first, last)
     place = summary.track.place[numbers, :2]
     after_gap = np.flatnonzero(np.diff(summary.motion.smoothed.part[numbers])) + 1
     x, y = (np.insert(place[:, axis], after_gap, np.nan) for axis in (0, 1))
@@ -185,8 +188,7 @@ def track_along(summary: TrackSummary) -> Figure:
     rows = 3 if with_height else 2
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=42.0 * rows + 10.0)
     grid = figure.subplots(rows, 1, sharex=True)
-    numbers = drawn_points(0, len(summary.track) - 1)
-    numbers = numbers[summary.track.usable[numbers]]
+    numbers = _usable_points(summary, 0, len(summary.track) - 1)
     arc_length = summary.motion.arc_length - summary.motion.arc_length[0]
     unit = KILOMETRE if arc_length[-1] > _IN_KILOMETRES else 1.0
     _draw_speed(grid[0], summary, numbers, arc_length / unit)

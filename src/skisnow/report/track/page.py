@@ -19,7 +19,8 @@ from ..figures.drawing import Picture
 from ..figures.figure_files import render_pictures
 from ..formatting import counted, html
 from ..pair_verdicts import read_compared, time_verdict
-from ..race.folder import gap_drawings, gaps_headline, gaps_section
+from ..race.figures import gap_drawings
+from ..race.folder import gaps_headline, gaps_section
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table, record_table
 from .report import comparison_drawing, track_drawings

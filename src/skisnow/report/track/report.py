@@ -43,10 +43,8 @@ if TYPE_CHECKING:
     from ...comparison import Comparison, Distances
     from ...track.course import CourseResult
 
-FIGURES: Final = ("map", "speed", "radius", "along")
-"""Names of a track's figures, in figures/ as .png and .svg."""
-OF_COURSE: Final = "course"
-"""Name of the further figure of a track with gates."""
+FIGURES: Final = ("map", "speed", "radius", "along", "course")
+"""Names of a track's figures, in figures/ as .png and .svg; the last one only with gates."""
 
 
 def write_track_report(
@@ -73,15 +71,15 @@ def write_track_report(
     require_writable(folder)
     text = json_text(summary_dict(summary) if values is None else values)
     with staged(folder, last="track.json") as stage:
-        stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv", GPX_FILE]
+        stage.stale += [*picture_files(FIGURES), "gates.csv", GPX_FILE]
         tables = {TURNS_FILE: turns_csv(summary), POINTS_FILE: points_csv(summary), GPX_FILE: track_gpx(summary)}
         for name, content in tables.items():
             if content is not None:
                 write_file(stage.path / name, content)
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
-        drawings, every = track_drawings(summary, gates), (*FIGURES, OF_COURSE)
-        write_pictures(drawings, stage.path / "figures", every=every, language=language, progress=progress)
+        drawings = track_drawings(summary, gates)
+        write_pictures(drawings, stage.path / "figures", language=language, progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 
@@ -164,9 +162,7 @@ def track_comparison(comparison: Comparison) -> Figure:
     grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
     plan = figure.add_subplot(grid[0])
     _draw_plan(plan, comparison)
-    plan_axes(plan, limits)
-    if comparison.axes in _AXIS_WORDS:
-        _relabel_axes(plan, *_AXIS_WORDS[comparison.axes])
+    plan_axes(plan, limits, labels=_AXIS_WORDS.get(comparison.axes))
     _draw_distances(figure.add_subplot(grid[1]), comparison)
     legend_below(figure, _legend_handles(comparison))
     return figure
@@ -179,14 +175,6 @@ def comparison_drawing(comparison: Comparison) -> Drawing:
     caption = prose("{simulated} and {measured} from above, and the distance between them along the latter.", **names)
     alt = Message("{simulated} and {measured} from above, and the distance between them.", **names)
     return Drawing("track_comparison", caption, alt, track_comparison(comparison))
-
-
-def _relabel_axes(axes: Axes, x_label: str, y_label: str) -> None:
-    """Replace the axis labels, and remove the arrow down the fall line."""
-    axes.set_xlabel(x_label)
-    axes.set_ylabel(y_label)
-    for text in list(axes.texts):
-        text.remove()
 
 
 def _draw_plan(axes: Axes, comparison: Comparison) -> None:

@@ -64,7 +64,8 @@ def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     smoothing = values["smoothing"]
     yield "points", f"{values['points']} in {plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
     if values["start"]:
-        yield "start", _moment(values["start"], values["time_scale"])
+        time, scale = datetime.fromisoformat(values["start"]), values["time_scale"]
+        yield "start", f"{date_words(time)}, {time:%H:%M:%S}{'' if scale == 'local' else f' {scale}'}"
     if values.get("solutions"):
         yield (
             "carrier phase",
@@ -90,13 +91,6 @@ def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
     return "" if ends is None else f" (95 %: {plain(ends[0], digits)} to {plain(ends[1], digits)} {unit})"
-
-
-def _moment(start: str, time_scale: str) -> str:
-    """Start of a track to the second, in its own time scale."""
-    time = datetime.fromisoformat(start)
-    scale = "" if time_scale == "local" else f" {time_scale}"
-    return f"{date_words(time)}, {time:%H:%M:%S}{scale}"
 
 
 _DISTANCE_WORDS: Final = {
@@ -266,21 +260,16 @@ def _fitted_lines(comparison: Mapping[str, Any]) -> Iterator[str]:
         return
     yield ""
     yield f"Fitted: {', '.join(fitted['what'])}. The simulated track was moved as a whole before it was compared:"
-    yield f"  {fitted_words(fitted)}"
+    height = "" if fitted["moved_z_m"] is None else f", z {plain(fitted['moved_z_m'])} m"
+    yield (
+        f"  start by x {plain(fitted['moved_x_m'])} m, y {plain(fitted['moved_y_m'])} m{height}; turned by "
+        f"{plain(fitted['turned_deg'])} degrees to the left; looked up {plain(fitted['later_s'])} s later"
+    )
     if fitted["undetermined"]:
         yield f"  {fitted['undetermined']} direction(s) these tracks do not tell; nothing was moved along them"
     for kind, title in TITLES.items():
         before, after = (_max_mean(state[kind], comparison["known_to_m"]) for state in (fitted["before"], comparison))
         yield f"  {title}: largest and mean {before} before, {after} after"
-
-
-def fitted_words(fitted: Mapping[str, Any]) -> str:
-    """Displacement of the fitted simulated track in words."""
-    height = "" if fitted["moved_z_m"] is None else f", z {plain(fitted['moved_z_m'])} m"
-    return (
-        f"start by x {plain(fitted['moved_x_m'])} m, y {plain(fitted['moved_y_m'])} m{height}; turned by "
-        f"{plain(fitted['turned_deg'])} degrees to the left; looked up {plain(fitted['later_s'])} s later"
-    )
 
 
 def _max_mean(distances: Mapping[str, Any], exact: float) -> str:

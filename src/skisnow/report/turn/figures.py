@@ -16,7 +16,19 @@ from ..._support.units import MM
 from ...comparison.distances import arc_lengths
 from ...comparison.nearest_place import distance_from_path
 from ...scenario import Plane
-from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, line_style, new_figure
+from ..figures.style import (
+    BLACK,
+    BLUE,
+    DOUBLE_MM,
+    GREY,
+    PALE,
+    SKY,
+    VERMILLION,
+    label_time,
+    legend_below,
+    line_style,
+    new_figure,
+)
 from ..formatting import figure_text
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 
@@ -123,8 +135,7 @@ def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str
     axes.fill_between(time, band[1], band[3], color=SKY, alpha=0.6, linewidth=0, zorder=1)
     axes.plot(time, band[2], color=BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
     axes.axhline(0.0, color=VERMILLION, linewidth=0.8, zorder=3)
-    axes.set_xlim(float(time[0]), float(time[-1]))
-    axes.set_xlabel(Message("time (s)"))
+    label_time(axes, time)
     axes.set_ylabel(label)
 
 

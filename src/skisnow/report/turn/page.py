@@ -59,7 +59,7 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     folder = Path(folder)
     prepare_folder(folder)
     with staged(folder, last="report.html") as stage:
-        pictures = write_pictures(_make_drawings(chain), stage.path / "figures", every=FIGURES, language=language)
+        pictures = write_pictures(_make_drawings(chain), stage.path / "figures", language=language)
         write_file(stage.path / "turn.json", f"{json_text(turn_dict(chain))}\n")
         write_file(stage.path / "report.html", turn_page(chain, pictures, language=language))
     return folder / "report.html"
