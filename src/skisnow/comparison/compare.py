@@ -125,7 +125,8 @@ def compare_tracks(
     _require_near(plain.simulated, plain.measured, names)
     fitted = plain.fitted
     if placed and fitted is not None:
-        azimuth = None if together else _azimuth(fitted, measured)
+        turned = fitted.turned if measured.axes == "east_north_up" else -fitted.turned
+        azimuth = None if together else (0.5 * math.pi - turned) % math.tau
         fitted = replace(fitted, slope_angle=laid.angle, azimuth=azimuth)
         if not together:
             direction = _direction_sentence(fitted, laid, simulated, measured)
@@ -259,12 +260,6 @@ def _track_warnings(simulated: Track, measured: Track, dimensions: int) -> list[
 
 def _frames_sentence(simulated: Track, measured: Track) -> str:
     return f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; {measured.name}: {measured.frame})"
-
-
-def _azimuth(fitted: FittedOffsets, measured: Track) -> float:
-    """Compass direction (rad) of x of the track that is not in east, north, up."""
-    turned = fitted.turned if measured.axes == "east_north_up" else -fitted.turned
-    return (0.5 * math.pi - turned) % math.tau
 
 
 def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Track, measured: Track) -> str:

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.units import ShownFields
 from ..track.track import Track
-from .nearest_place import NearestPlaces, Path
+from .nearest_place import Path
 
 _SMOOTH: Final = 0.05
 """Below this change of the offset, in parts of its length, three Gauss points are exact to rounding."""
@@ -130,7 +129,8 @@ def nearest_offsets(simulated: Path, measured: Polyline) -> OffsetSeries:
         middle = 0.5 * (arc_length[open_] + arc_length[open_ + 1])
         at = measured.at_arc_length(middle)
         nearest = simulated.nearest(at)
-        bent = _nonlinearity(offset, open_, nearest, at) > EXACTNESS * measured.length
+        linear = 0.5 * np.linalg.norm(offset[open_] + offset[open_ + 1], axis=1)
+        bent = np.abs(nearest.distance - linear) > EXACTNESS * measured.length
         ends = (beyond[open_] != nearest.beyond) | (beyond[open_ + 1] != nearest.beyond)
         split = bent & ~(beyond[open_] & beyond[open_ + 1] & nearest.beyond)
         split = (split | ends) & (arc_length[open_ + 1] - arc_length[open_] > _END * measured.length)
@@ -142,14 +142,6 @@ def nearest_offsets(simulated: Path, measured: Polyline) -> OffsetSeries:
         left = (open_ + np.arange(len(open_)))[split]
         open_ = np.sort(np.concatenate([left, left + 1]))
     return OffsetSeries(arc_length, np.where(beyond[:, None], np.nan, offset))
-
-
-def _nonlinearity(
-    offset: FloatArray, first: npt.NDArray[np.intp], nearest: NearestPlaces, at: FloatArray
-) -> FloatArray:
-    """Difference (m) between the distance in the middle and that of an offset that changes linearly."""
-    straight = 0.5 * np.linalg.norm(offset[first] + offset[first + 1], axis=1)
-    return np.abs(np.linalg.norm(nearest.foot - at, axis=1) - straight)
 
 
 def arc_length_offsets(simulated: Polyline, measured: Polyline) -> OffsetSeries:

@@ -214,18 +214,14 @@ def _camera(model: Glb, replay: Replay, times: int, places: int) -> int:
     right /= math.hypot(*right)
     axes = np.column_stack([right, np.cross(back, right), back])  # a camera looks along -z, y up, section 3.10
     eye = model.node("camera", camera=0, translation=list(_EYE), rotation=Rotation.from_matrix(axes).as_quat())
-    leans = _about(1, _steepness_behind(replay))
+    x, y = replay.place[:, 0], replay.place[:, 1]
+    rise = surface_heights(replay, x + _EYE[0], y) - surface_heights(replay, x, y)  # of the snow below the camera
+    leans = _about(1, np.arctan2(rise, -_EYE[0]))
     along = model.node("camera's place", translation=replay.place[0], rotation=leans[0], children=[eye])
     model.move(along, "translation", times, places)
     if replay.profile is not None or replay.terrain is not None:
         model.move(along, "rotation", times, model.array(leans))
     return along
-
-
-def _steepness_behind(replay: Replay) -> FloatArray:
-    """Angle (n,) by which the snow falls from under the camera to the sledge (rad): by so much the camera is higher."""
-    x, y = replay.place[:, 0], replay.place[:, 1]
-    return np.arctan2(surface_heights(replay, x + _EYE[0], y) - surface_heights(replay, x, y), -_EYE[0])
 
 
 def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:

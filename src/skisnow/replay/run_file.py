@@ -63,7 +63,8 @@ def replay_of_file(
     try:
         with netcdf_file(path, "r", mmap=False) as file:
             content: Any = file  # its attributes are those of the file
-            arrays, values = _read_arrays(content), _scenario(content)
+            arrays, sections = _read_arrays(content), json_value(content.scenario.decode("utf-8"))
+            values = {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
             boots = _boots(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         require_drawable(arrays)
@@ -98,12 +99,6 @@ def _boots(file: Any) -> ReplayBoots | None:
     return moving_boots(place, axes.reshape(*angles.shape, 3))
 
 
-def _scenario(file: Any) -> dict[str, Any]:
-    """Values of the scenario by full name."""
-    sections = json_value(file.scenario.decode("utf-8"))
-    return {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
-
-
 def _vectors(file: Any, pattern: str, names: Sequence[str] = "xyz") -> FloatArray:
     """Vectors (…, 3) from the variables of their components."""
     return np.stack([_values(file, pattern.format(name)) for name in names], axis=-1)
@@ -118,7 +113,9 @@ def _values(file: Any, name: str) -> FloatArray:
 
 
 def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
-    ski, slope = ski or _read_ski(path, values), _read_slope(path, values)
+    slope, file = _read_slope(path, values), scenario_value(values, "ski.file")
+    if ski is None:
+        ski = ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file, "ski"))
     has_skier, edge_angle = values.get("skier.steers") is not None, needed_value(values, "sledge.edge_angle_deg")
     mass, inertia = needed_value(values, "sledge.mass_kg"), needed_value(values, "sledge.inertia_kg_m2")
     body = height_of(mass, inertia[0]), mass * needed_value(values, "slope.gravity_m_per_s2")
@@ -140,11 +137,6 @@ def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: flo
         ),
         body=body if has_skier else None,
     )
-
-
-def _read_ski(path: Path, values: dict[str, Any]) -> Ski:
-    file = scenario_value(values, "ski.file")
-    return ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file, "ski"))
 
 
 def _read_slope(path: Path, values: dict[str, Any]) -> Slope:

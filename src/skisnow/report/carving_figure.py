@@ -48,10 +48,10 @@ def carved_skis(contents: Json) -> Figure:
         _draw_along_ski(axes, answers, key, label)
     _draw_plan(figure.add_subplot(grid[2, :], sharex=first), answers)
     figure.suptitle(_inputs_in_words(answers[0]), x=0.01, ha="left", fontsize=8.0)
-    handles = [
-        Line2D([], [], label=_label(title, answer["outcome"]), **line_style(place))
-        for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True))
-    ]
+    handles = []
+    for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True)):
+        outcome = "" if answer["outcome"] == "equilibrium" else f" ({outcome_words(answer['outcome'])})"
+        handles.append(Line2D([], [], label=figure_text(title) + outcome, **line_style(place)))
     circles = (
         (Message("circle through boot and {reach} m to each side", reach=BOOT_REACH), _BOOT_CIRCLE),
         (Message("through boot and ends of contact"), _CHORD_CIRCLE),
@@ -59,10 +59,6 @@ def carved_skis(contents: Json) -> Figure:
     handles += [Line2D([], [], color=BLACK, linestyle=style, linewidth=0.9, label=label) for label, style in circles]
     legend_below(figure, handles)
     return figure
-
-
-def _label(title: str, outcome: str) -> str:
-    return figure_text(title) + ("" if outcome == "equilibrium" else f" ({outcome_words(outcome)})")
 
 
 def _inputs_in_words(answer: Json) -> str:

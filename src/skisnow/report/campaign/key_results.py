@@ -259,18 +259,15 @@ def _law_sentence(data: ReportData) -> Markup | None:
     if selected is None:
         return None
     law = Markup("<strong>F = {}</strong>").format(html(formula(selected["id"])))
-    sentences = [prose("Selected law of the penetration force: {law}.", law=law), _reason(data)]
+    names = {row["id"]: Message("the row {name}", name=model_name(row["id"]))
+             for row in data.results["penetration"]["models"]}  # fmt: skip
+    reason: Message = selected["reason"]
+    fields = {key: names.get(value, value) for key, value in reason.fields.items()}
+    reason_words = html(Message(reason.template, **fields))
+    sentences = [prose("Selected law of the penetration force: {law}.", law=law), reason_words]
     if selected["id"] == "H_V:a=none,b=one":
         sentences.append(prose("This is the law that the paper proposes (its Eqn 12)."))
     return Markup(" ").join(sentences)
-
-
-def _reason(data: ReportData) -> Markup:
-    """Reason for the selection, with the names of the models instead of their ids."""
-    reason: Message = data.results["penetration"]["selected"]["reason"]
-    names = {row["id"]: Message("the row {name}", name=model_name(row["id"]))
-             for row in data.results["penetration"]["models"]}  # fmt: skip
-    return html(Message(reason.template, **{key: names.get(value, value) for key, value in reason.fields.items()}))
 
 
 def _relations_sentence(data: ReportData) -> Markup | None:

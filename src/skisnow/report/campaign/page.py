@@ -25,15 +25,8 @@ from ..formatting import days_words, moment_words, significant
 from ..sheet import bibtex, cited_text, render_template
 from ..table import Table, table_csv, table_html
 from ..table_latex import table_latex
+from . import findings
 from .data import ReportData
-from .findings import (
-    caveats,
-    procedure_comparison,
-    readings_used,
-    regression_sentences,
-    seating_findings,
-    unloading_findings,
-)
 from .key_results import headline, key_results
 from .model_figures import model_rmse, residuals
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
@@ -159,12 +152,12 @@ def page(
             "report.html",
             **_frame(data),
             key_results=key_results(data),
-            caveats=caveats(data),
-            readings_used=readings_used(data),
-            procedures_compared=procedure_comparison(data),
-            seating_found=seating_findings(data),
-            unloading_found=unloading_findings(data),
-            regression_sentences=regression_sentences(data),
+            caveats=findings.caveats(data),
+            readings_used=findings.readings_used(data),
+            procedures_compared=findings.procedure_comparison(data),
+            seating_found=findings.seating_findings(data),
+            unloading_found=findings.unloading_findings(data),
+            regression_sentences=findings.regression_sentences(data),
             tables=defaultdict(Markup, tables_html(tables)),
             pictures=pictures,
             missing=missing,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -85,10 +86,7 @@ def _experiment_lines(results: Json) -> Iterator[str]:
 
 
 def _flag_counts(rows: list[Json]) -> str:
-    counts: dict[str, int] = {}
-    for row in rows:
-        for code in row["flags"]:
-            counts[code] = counts.get(code, 0) + 1
+    counts = Counter(code for row in rows for code in row["flags"])
     return f" ({', '.join(f'{code} {count}' for code, count in counts.items())})" if counts else ""
 
 
@@ -99,12 +97,13 @@ def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -
         yield f"{symbol}: none"
         return
     sites = [item for item in results["site_means"] if item["quantity"] == quantity]
-    pooled = _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), _over_sites(sites))
-    if len(sites) > 1:
-        yield from (_site_line(item, symbol, unit, kind) for item in sites[:MOST_SITES])
-        if len(sites) > MOST_SITES:
-            yield f"  and {len(sites) - MOST_SITES} more sites in results.json"
-    yield pooled
+    over = f"over {len(sites)} sites" if len(sites) > 1 else f"over the experiments of one site, {sites[0]['site']}"
+    for item in sites[:MOST_SITES] if len(sites) > 1 else ():
+        numbers, own = (item["mean"], item["interval"], item["range"]), f"over its experiments, n = {item['n']}"
+        yield _mean(f"{symbol} at {item['site']}", kind, unit, numbers, own)
+    if len(sites) > MOST_SITES:
+        yield f"  and {len(sites) - MOST_SITES} more sites in results.json"
+    yield _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), over)
 
 
 def _unloading(results: Json, tag: str) -> Iterator[str]:
@@ -158,20 +157,11 @@ def _ratio_in_words(row: Json) -> str:
     return "not resolved"
 
 
-def _over_sites(sites: list[Json]) -> str:
-    return f"over {len(sites)} sites" if len(sites) > 1 else f"over the experiments of one site, {sites[0]['site']}"
-
-
 def _mean(symbol: str, kind: str, unit: str, numbers: tuple[float, list[float] | None, list[float]], over: str) -> str:
     mean, ends, extremes = numbers
     interval_words = f"95 % interval {interval(ends, style='plain')} {over}" if ends else f"no interval {over}"
     spread = " to ".join(plain(end) for end in extremes)
     return f"{symbol}: {kind} {plain(mean)} {unit}, {interval_words}, range {spread}"
-
-
-def _site_line(item: Json, symbol: str, unit: str, kind: str) -> str:
-    numbers = (item["mean"], item["interval"], item["range"])
-    return _mean(f"{symbol} at {item['site']}", kind, unit, numbers, f"over its experiments, n = {item['n']}")
 
 
 def _missing_values(campaign: Json, *, has_tests: bool) -> Iterator[str]:

@@ -15,21 +15,8 @@ from ...estimation.comparisons import own_mean
 from ...snow.published import hand_hardness
 from ...snow.published.moessner_2013 import SNOW_DENSITY_RANGE
 from ..table import Column, Table, record_table
+from . import model_tables, series_tables
 from .data import Json, ReportData, UsedTests
-from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
-from .series_tables import (
-    displacement_sites_table,
-    displacement_table,
-    growth_sites_table,
-    growth_table,
-    penetration_table,
-    seating_largest_table,
-    seating_quantiles_table,
-    seating_table,
-    shear_table,
-    unloading_sites_table,
-    unloading_table,
-)
 
 QUANTITY: Final = {
     "S_f_N_per_mm2": ("S_f", "N/mm²"),
@@ -378,19 +365,19 @@ BUILDERS: Final = (
     sites_table,
     corrections_table,
     warnings_table,
-    models_table,
-    nested_table,
-    errors_in_depth_table,
-    fitted_hardness_table,
-    growth_sites_table,
-    growth_table,
-    seating_quantiles_table,
-    seating_largest_table,
-    seating_table,
-    unloading_sites_table,
-    unloading_table,
-    displacement_sites_table,
-    displacement_table,
+    model_tables.models_table,
+    model_tables.nested_table,
+    model_tables.errors_in_depth_table,
+    model_tables.fitted_hardness_table,
+    series_tables.growth_sites_table,
+    series_tables.growth_table,
+    series_tables.seating_quantiles_table,
+    series_tables.seating_largest_table,
+    series_tables.seating_table,
+    series_tables.unloading_sites_table,
+    series_tables.unloading_table,
+    series_tables.displacement_sites_table,
+    series_tables.displacement_table,
     published_relations_table,
     snow_micro_pen_table,
     regressions_table,
@@ -398,8 +385,8 @@ BUILDERS: Final = (
     group_comparison_table,
     published_table,
     quality_flags_table,
-    penetration_table,
-    shear_table,
+    series_tables.penetration_table,
+    series_tables.shear_table,
     files_table,
 )
 """Functions that build one table each, in the order of the report. Add a table by adding its function."""

@@ -54,7 +54,9 @@ def write_run_file(
     sizes = {TIME: len(run.time), SKI: len(SKI_NAMES), STATION: len(run.skis.station), PIECE: len(run.groove.width)}
     for name, size in (sizes | {"space_axis": 3, "sledge_axis": 3, "letter": _LETTERS}).items():
         file.createDimension(name, size)
-    _write_ski_names(file)
+    named: Any = file.createVariable("ski_name", "c", (SKI, "letter"))
+    named.long_name = b"which ski"
+    named[:] = np.array([list(name.ljust(_LETTERS)) for name in SKI_NAMES], dtype="S1")
     for variable in variables_of(run):
         _write_variable(file, variable, run)
     file.flush()
@@ -92,13 +94,6 @@ def _write_attributes(file: Any, run: Run, values: Mapping[str, Any], provenance
             setattr(file, name, np.float64(number))
     for name, count in (("steps", run.steps), ("rejected_steps", run.rejected_steps)):
         setattr(file, name, np.int32(count))
-
-
-def _write_ski_names(file: Any) -> None:
-    """Write the labels "left" and "right" of the dimension of skis."""
-    variable = file.createVariable("ski_name", "c", (SKI, "letter"))
-    variable.long_name = b"which ski"
-    variable[:] = np.array([list(name.ljust(_LETTERS)) for name in SKI_NAMES], dtype="S1")
 
 
 def _write_variable(file: Any, variable: RunVariable, run: Run) -> None:

@@ -238,7 +238,9 @@ def hide_overlapping(axes: Axes, mm_per_unit: float) -> None:
     for word in axes.texts:
         if isinstance(word, Annotation) and word.get_gid() == MARK:
             box = _box(word, mm_per_unit)
-            is_free = not any(_overlap(box, other) for other in taken)
+            is_free = not any(
+                all(abs(box[k] - other[k]) < box[2 + k] + other[2 + k] for k in (0, 1)) for other in taken
+            )
             word.set_visible(is_free)
             taken += [box] if is_free else []
 
@@ -250,7 +252,3 @@ def _box(word: Annotation, mm_per_unit: float) -> tuple[float, float, float, flo
     more = half_width if word.get_horizontalalignment() == "left" else 0.0
     centre = x * mm_per_unit + aside * _POINT_MM + more, y * mm_per_unit + above * _POINT_MM
     return (*centre, half_width, 0.6 * size)
-
-
-def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
-    return all(abs(one[k] - other[k]) < one[2 + k] + other[2 + k] for k in (0, 1))

@@ -299,7 +299,10 @@ def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
 
 def shares_table(chain: TurnChain) -> Table:
     """Table of the inputs of the band with their shares in the variance at its end."""
-    shares = band_shares(middle_track(chain.nominal), chain.ensemble)
+    shares, left_over = band_shares(middle_track(chain.nominal), chain.ensemble), []
+    if shares is not None:
+        rest = ((100.0 * direction.left, None) for direction in (shares.aside, shares.ahead))
+        left_over = [(Message("left over"), None, "", *rest)]
     return Table(
         "band_inputs",
         Message("Inputs of the band, and how much each adds to the variance of the places at its end."),
@@ -312,7 +315,7 @@ def shares_table(chain: TurnChain) -> Table:
         ),
         [
             *((row.key, (row.low, row.high), row.in_words, *_shares_of(row.key, shares)) for row in band_inputs(chain)),
-            *_unexplained_rows(shares),
+            *left_over,
         ],
         note=Message(
             "Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
@@ -332,10 +335,3 @@ def _shares_of(key: str, shares: BandShares | None) -> tuple[Any, Any]:
         for direction in (shares.aside, shares.ahead)
     )
     return across, along
-
-
-def _unexplained_rows(shares: BandShares | None) -> list[tuple[Any, ...]]:
-    if shares is None:
-        return []
-    across, along = ((100.0 * direction.left, None) for direction in (shares.aside, shares.ahead))
-    return [(Message("left over"), None, "", across, along)]
