@@ -179,8 +179,6 @@ class Shown:
 
     def _repr_html_(self) -> str:
         """The same as a table with a small figure, which a notebook shows."""
-        from html import escape
-
         title, rows = self._notebook_facts()
         caption = escape(f"{type(self).__name__} {title}".strip())
         cells = "".join(

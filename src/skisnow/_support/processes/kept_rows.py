@@ -7,7 +7,7 @@ import sqlite3
 import weakref
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
@@ -94,11 +94,15 @@ class KeptRows:
         with _errors(path):
             rows = cls(path)
         try:
-            with rows._named_errors():
+            with _errors(path, rows._database):
                 rows._lock_and_begin(about)
                 entries = rows.about()
             if about is not None and entries["fingerprint"] != about["fingerprint"]:
-                raise _other_batch_error(path)
+                raise ParameterError(
+                    "{path} contains the finished points of another study, or of this one before its inputs, one of "
+                    "its files or skisnow changed. Undo the change to continue them, or remove that file to start "
+                    "again."
+                ).tag("another_study", path=path)
         except BaseException:
             rows.close()
             raise
@@ -134,7 +138,7 @@ class KeptRows:
     def add(self, rows: Iterable[NumberedText]) -> int:
         """Store rows, all or none, so that a kill does not lose them; return their number."""
         new = list(rows)
-        with self._named_errors():
+        with _errors(self.path, self._database):
             self._database.execute("begin")
             with self._database:
                 self._database.executemany(
@@ -183,11 +187,8 @@ class KeptRows:
                 raise _damage_error(self.path, f"the row of point {number + 1} has changed")
             yield number, text
 
-    def _named_errors(self) -> AbstractContextManager[None]:
-        return _errors(self.path, self._database)
-
     def _run_query(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
-        with self._named_errors():
+        with _errors(self.path, self._database):
             # `yield from` closes the cursor, which fails behind a closed database
             for record in self._database.execute(query, parameters):  # noqa: UP028
                 yield record
@@ -247,13 +248,6 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
         damage = None if database is None else first_damage(database)
         raise _damage_error(path, damage or str(error)) from error
-
-
-def _other_batch_error(path: Path) -> ParameterError:
-    return ParameterError(
-        "{path} contains the finished points of another study, or of this one before its inputs, one of its files or "
-        "skisnow changed. Undo the change to continue them, or remove that file to start again."
-    ).tag("another_study", path=path)
 
 
 def _damage_error(path: Path | None, why: str) -> ParameterError:
