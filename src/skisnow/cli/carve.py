@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._support.messages import Message, in_language, local_number
 from .options import add_language, number, whole_number
-from .output import Progress, announced, prepare_figure, print_json
+from .output import Progress, announced, prepare_figure, print_json, print_warnings
 
 if TYPE_CHECKING:
     from ..carving.answer import CarveAnswer
@@ -94,13 +94,15 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 def carve_ski(options: argparse.Namespace) -> int:
     """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
-    from ..carving.answer import answers_dict
+    from ..carving.answer import answers_dict, sensitivities_dict
 
     prepare_figure(options.figure)
     answers = _compute_answers(options)
     _print_warnings(answers)
-    result = answers_dict(answers)
-    derivatives = [] if options.sensitivity is None else _sensitivities(answers, options.sensitivity)
+    result, derivatives = answers_dict(answers), []
+    if options.sensitivity is not None:
+        names = [name for name in options.sensitivity if name]
+        derivatives = [sensitivities_dict(answer.equilibrium, names) for answer in answers]
     for answer, derivative in zip(result.get("skis", [result]), derivatives, strict=False):
         answer["sensitivity"] = derivative
     if options.figure is not None:
@@ -118,12 +120,6 @@ def carve_ski(options: argparse.Namespace) -> int:
         for answer, derivative in zip(answers, derivatives, strict=False):
             print(_sensitivity_table(answer.ski.name, derivative))
     return _exit_status(answers)
-
-
-def _sensitivities(answers: list[CarveAnswer], names: list[str]) -> list[list[dict[str, Any]]]:
-    from ..carving.answer import sensitivities_dict
-
-    return [sensitivities_dict(answer.equilibrium, [name for name in names if name]) for answer in answers]
 
 
 def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
@@ -157,8 +153,7 @@ def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
 def _print_warnings(answers: list[CarveAnswer]) -> None:
     several = len(answers) > 1
     lines = [f"{a.question.ski}: {text}" if several else text for a in answers for text in a.warnings]
-    for line in dict.fromkeys(lines):
-        print(f"warning: {line}", file=sys.stderr)
+    print_warnings(dict.fromkeys(lines))
 
 
 def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

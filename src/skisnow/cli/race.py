@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -117,22 +116,28 @@ def run(options: argparse.Namespace) -> int:
     """Search, simulate the result by the scenario's method, compare, print, write; 1 if no line passes all gates."""
     try:
         with ending_is_an_interrupt():
-            raced = _run_race(options)
+            fastest, checked, simulated, worth = _run_race(options)
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, options.out)
-    _write_and_print(options, raced)
-    return 1 if raced.fastest.score.time is None else 0
+    from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
+
+    place = write_race(
+        fastest, options.out, checked=checked, worth=worth, run=simulated, against=tuple(options.against)
+    )
+    if options.json:
+        print_json(race_dict(fastest, checked, worth))
+    else:
+        print(race_summary(fastest, checked), flush=True)
+        if worth:
+            print(f"\n{worth_summary(worth)}", flush=True)
+    print(f"Race: {place}", file=sys.stderr)
+    return 1 if fastest.score.time is None else 0
 
 
-@dataclass(frozen=True)
-class _RaceResult:
-    fastest: QuickestLine
-    checked: list[tuple[str, Score]]
-    run: Run | None
-    worth: tuple[Worth, ...]
-
-
-def _run_race(options: argparse.Namespace) -> _RaceResult:
+def _run_race(
+    options: argparse.Namespace,
+) -> tuple[QuickestLine, list[tuple[str, Score]], Run | None, tuple[Worth, ...]]:
+    """The quickest line, its checked scores with the run by the scenario's method, and the worth of the variants."""
     with announced("loading"):
         from ..racing import compare_variants, drawn_for_race, quickest_line
         from ..racing.search import require_cmaes
@@ -161,7 +166,7 @@ def _run_race(options: argparse.Namespace) -> _RaceResult:
                 fastest.scenario, fast, fastest.line, snows, start=start,
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
-    return _RaceResult(fastest, checked, run, worth)
+    return fastest, checked, run, worth
 
 
 def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
@@ -200,20 +205,3 @@ def _scores_by_method(
         return [], run
     progress("racing again: where it began")
     return [*checked, ("where it began", run_score(ski_line(scenario, fastest.start)))], run
-
-
-def _write_and_print(options: argparse.Namespace, raced: _RaceResult) -> None:
-    from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
-
-    fastest, checked, worth = raced.fastest, raced.checked, raced.worth
-    place = write_race(
-        fastest, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against)
-    )
-    if options.json:
-        contents = race_dict(fastest, checked, worth)
-        print_json(contents)
-    else:
-        print(race_summary(fastest, checked), flush=True)
-        if worth:
-            print(f"\n{worth_summary(worth)}", flush=True)
-    print(f"Race: {place}", file=sys.stderr)

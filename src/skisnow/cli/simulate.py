@@ -52,7 +52,10 @@ def add_simulate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def simulate_scenario(options: argparse.Namespace) -> int:
     """Simulate, print, write; 0 with every outcome but an interrupted one, which is kept all the same."""
     if options.list:
-        return _print_list(options.scenario)
+        from ..scenario import scenario_names, scenario_text
+
+        print("\n".join(scenario_names()) if options.scenario is None else scenario_text(options.scenario).rstrip())
+        return 0
     if options.scenario is None:
         options.parser.error("name a scenario: a built-in one (--list names them) or a TOML file")
     if options.replay and options.out is None:
@@ -65,13 +68,6 @@ def simulate_scenario(options: argparse.Namespace) -> int:
         with ending.finishing():
             _write_and_print(options, scenario_input, result, refinements)
     return ending.status() if ending.requested or ending.pressed or result.outcome == "interrupted" else 0
-
-
-def _print_list(name: str | None) -> int:
-    from ..scenario import scenario_names, scenario_text
-
-    print("\n".join(scenario_names()) if name is None else scenario_text(name).rstrip())
-    return 0
 
 
 def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .._support.units import DEGREE
 from .options import add_fall_line_azimuth, add_language, number
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ..track.course.gates_table import GateGap
     from ..track.projection import GeodeticPoint
     from ..track.track import Track
+
+    Gaps: TypeAlias = tuple[GateGap, ...] | None
 
 
 def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -205,7 +207,7 @@ def compare(options: argparse.Namespace) -> int:
 
             print(f"\n{gaps_text(gaps, comparison.names)}", flush=True)
     if options.out is not None:
-        _write_comparison(options.out, comparison, answer, verdict, options.language, gaps)
+        _write_comparison(options, comparison, answer, verdict, gaps)
     return 0
 
 
@@ -255,12 +257,7 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
 
 
 def _write_comparison(
-    folder: Path,
-    comparison: Comparison,
-    answer: dict[str, Any],
-    verdict: Message | None,
-    language: str,
-    gaps: tuple[GateGap, ...] | None,
+    options: argparse.Namespace, comparison: Comparison, answer: dict[str, Any], verdict: Message | None, gaps: Gaps
 ) -> None:
     from .._support.staging import staged, write_file
     from ..report.figures.figure_files import write_pictures
@@ -269,11 +266,12 @@ def _write_comparison(
     from ..report.track.page import comparison_page
     from ..report.track.report import comparison_drawing
 
-    with staged(folder, last="compare.json") as stage:
+    language = options.language
+    with staged(options.out, last="compare.json") as stage:
         stage.stale += FILES
         pictures = [] if gaps is None else write_gaps(gaps, comparison.names, stage.path, language=language)
         pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path, language=language)
         page = comparison_page(answer, pictures, verdict=verdict, gaps=gaps, language=language)
         write_file(stage.path / "report.html", page)
         write_file(stage.path / "compare.json", f"{json_text(answer)}\n")
-    print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF, EPS and CSV", file=sys.stderr)
+    print(f"Figure: {options.out / 'track_comparison.png'}, and as SVG, PDF, EPS and CSV", file=sys.stderr)
