@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import IO, Any, Final
+from typing import IO, Any, Final, NamedTuple
 
 from .._support.errors import OutputError, ParameterError
 from .._support.messages import Message
@@ -134,11 +132,17 @@ def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
         place.write_text(text, encoding="utf-8", newline="")
         if table:
             place.with_name(TABLE).write_text(table, encoding="utf-8", newline="")
-        try:
-            ski, warned = with_range_warnings(lambda: read_ski(place))
-        except ParameterError as error:
-            raise ParameterError(_without_folder(name, error.message)).tag(error.code) from error
-    return ski, " ".join(_without_folder(name, warning) for warning in warned)
+        return _read_in_folder(place)
+
+
+def _read_in_folder(place: Path) -> tuple[Ski, str]:
+    """Ski of a file in a temporary folder, and warnings of the reader; messages do not name the folder."""
+    folder = str(place.parent)
+    try:
+        ski, warned = with_range_warnings(lambda: read_ski(place))
+    except ParameterError as error:
+        raise ParameterError(_without_folder(folder, error.message)).tag(error.code) from error
+    return ski, " ".join(_without_folder(folder, warning) for warning in warned)
 
 
 def check_ski_texts(text: str, table: str) -> None:
@@ -196,14 +200,12 @@ MEASURED: Final = {
 OPTIONAL: Final = ("camber_mm",)
 
 
-@dataclass(frozen=True, slots=True)
-class SkiTexts:
-    """A ski that was read: name, texts of its file and table, warnings of the reader."""
+class SkiTexts(NamedTuple):
+    """A ski that was read: name, and texts of its file and table."""
 
     name: str
     text: str
     table: str
-    warned: str
 
 
 def measured_text(name: str, typed: Mapping[str, str]) -> str:
@@ -265,16 +267,10 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
         raise ParameterError(
             "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"
         ).tag("not_one_ski")
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            ski = read_ski(place)
-        except ParameterError as error:
-            raise ParameterError(_without_folder(folder, error.message)).tag(error.code) from error
-    warned = " ".join(str(warning.message).replace(f"{folder}/", "") for warning in caught)
+    ski, _ = _read_in_folder(place)
     is_whole = len(names) == 1 and files
     text, table = (place.read_text(encoding="utf-8-sig"), "") if is_whole else texts_of_ski(ski)
-    return SkiTexts(ski.name, text, table, warned)
+    return SkiTexts(ski.name, text, table)
 
 
 def _require_own_files(place: Path, names: Sequence[str]) -> None:

@@ -62,13 +62,8 @@ class Job:
         return self.title or self.name
 
 
-STATES: Final[dict[str, Message]] = {
-    "waiting": Message("waiting"),
-    "running": Message("running"),
-    "done": Message("done"),
-    "failed": Message("failed"),
-    "cancelled": Message("cancelled"),
-}
+_STATES: Final = (template("waiting"), template("running"), template("done"), template("failed"), template("cancelled"))
+"""Words of the states, marked for translation."""
 _PROGRESS: Final = (
     (
         re.compile(r"(?P<time>[\d.]+) s simulated, (?P<share>[\d.]+) %, (?P<rate>[\d.e+]+) times real time"),

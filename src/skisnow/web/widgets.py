@@ -18,7 +18,7 @@ from .._support.messages import Message, decimal_sign, joined
 from ..report.formatting import significant
 from .elements import Words, button, named
 from .layout import error_sentence, heading, sentence
-from .runs import STATES, Runs, progress_words
+from .runs import Runs, progress_words
 from .words import language_of, said
 
 Act: TypeAlias = Callable[[Callable[[], None]], None]
@@ -108,22 +108,19 @@ class LineChart(Element, component="line_chart.js"):
         values = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
         names = [line.name for line in lines if line.name]
         if not values:
-            words = Message("{chart}: nothing yet", chart=self._words)
-        elif names:
-            words = Message("{chart}: {extent} ({names})", chart=self._words, extent=_range_words(values), names=names)
-        else:
-            words = Message("{chart}: {extent}", chart=self._words, extent=_range_words(values))
-        return said(words, self.client)
+            return said(Message("{chart}: nothing yet", chart=self._words), self.client)
+        extent = Message("{low} to {high}", low=significant(min(values)), high=significant(max(values)))
+        if names:
+            return said(
+                Message("{chart}: {extent} ({names})", chart=self._words, extent=extent, names=names), self.client
+            )
+        return said(Message("{chart}: {extent}", chart=self._words, extent=extent), self.client)
 
 
 def save_buttons(name: str) -> None:
     """Add buttons that download all charts of the page as one PNG or SVG of this name."""
     for kind, words in (("png", Message("Curves as PNG")), ("svg", Message("Curves as SVG"))):
         button(words, None).on("click", js_handler=f"() => saveCharts('{name}.{kind}')")
-
-
-def _range_words(values: Sequence[float]) -> Message:
-    return Message("{low} to {high}", low=significant(min(values)), high=significant(max(values)))
 
 
 def _short(values: Sequence[float | None]) -> list[float | None]:
@@ -164,7 +161,7 @@ class JobCard:
     def show(self, job: Any) -> None:
         """Show the state of the job."""
         self._title.set_text(job.shown_name)
-        parts = (*self.inputs(job), STATES[job.state], job.said)
+        parts = (*self.inputs(job), Message(job.state), job.said)
         self._words.set_text(joined([part for part in parts if part], " · "))
         self._progress.set_text(progress_words(self.runs.progress) if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))

@@ -86,18 +86,21 @@ def ask_correction(
     row: tuple[ReplayedTest, Reading],
     changed: Mapping[str, str],
     *,
-    lines: Sequence[str],
     show: Callable[[], object],
     leave: Callable[[], object],
 ) -> bool:
     """Ask for the reason of changed cells of a row; True, also if none is changed.
 
-    lines: descriptions of the changes.
+    changed: texts by the keys of the cells.
     show, leave: functions that are called after the correction is stored, or not made.
     """
     if not changed:
         view.say(Message("Nothing is different."))
         return True
+    stored, nothing, lines = row[1].cells, Message("nothing"), []
+    for key, text in changed.items():
+        name, old, new = view.label(key.rpartition("/")[2]), number_text(stored.get(key, "")), number_text(text)
+        lines.append(Message("{name}: {old} becomes {new}.", name=name, old=old or nothing, new=new or nothing))
 
     def correct(why: str) -> bool:
         test, reading = row
@@ -110,15 +113,10 @@ def ask_correction(
         view.say(LEFT_AS_IT_WAS)
         leave()
 
-    ask_reason(place, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=left)
+    act = (Message("Correct it"), correct)
+    ask_reason(place, list(dict.fromkeys(lines)), act, usual=USUAL_REASON, leave=left)
     view.say(ASKED, "")
     return True
-
-
-def change_message(name: str, old: str, new: str) -> Message:
-    """Description of a changed cell; "" is an empty one."""
-    nothing = Message("nothing")
-    return Message("{name}: {old} becomes {new}.", name=name, old=old or nothing, new=new or nothing)
 
 
 def focus_button(button: ui.button) -> None:

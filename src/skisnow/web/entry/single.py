@@ -13,8 +13,8 @@ from ...campaign.store import Reading, ReplayedTest
 from ..elements import choice, field
 from ..layout import heading, sentence
 from ..page_requests import asking_button, entry_address, form
-from ..words import label, number_text
-from .changes import UNANSWERED, ask_correction, change_message, changes
+from ..words import label
+from .changes import UNANSWERED, ask_correction, changes
 from .readings import checked_fields, faults, is_other, refuse
 from .table_view import EntryList, TableView
 
@@ -187,15 +187,8 @@ class SingleForm:
             return False
         stored = row.cells
         changed = {column: text for column, text in cells.items() if text != stored.get(column, "")}
-        lines = [
-            change_message(label(column), number_text(stored.get(column, "")), number_text(new))
-            for column, new in changed.items()
-        ]
-        return ask_correction(
-            self._view, self._ask, (test, row), changed, lines=lines,
-            show=lambda: self.show(test.name, row=_entry_number(row)),
-            leave=lambda: self._draw(row.cells, (test, row))
-        )  # fmt: skip
+        show, leave = partial(self.show, test.name, row=_entry_number(row)), lambda: self._draw(row.cells, (test, row))
+        return ask_correction(self._view, self._ask, (test, row), changed, show=show, leave=leave)
 
 
 def _entry_number(row: Reading) -> str:

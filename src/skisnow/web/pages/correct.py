@@ -12,13 +12,12 @@ from ..._support.messages import Message
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import choice, field, folded, link
-from ..entry.changes import UNANSWERED, Attachments, ask_correction, change_message, changes
+from ..entry.changes import UNANSWERED, Attachments, ask_correction, changes
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import TableView, table_links
 from ..layout import heading, page_frame, sentence
 from ..page_requests import analysis, asking_button, correction_address, export, form, required_id
 from ..settings import BUILD_S, Lab
-from ..words import number_text
 
 HERE = "/"
 UNREAD = Message("no table of this campaign can be read; its errors are listed under Analysis in the list of campaigns")
@@ -53,7 +52,7 @@ def _show_test(session: CorrectionSession, file: str, name: str) -> None:
     with view.below, ui.element("div").classes("acts"):
         link(Message("Another test"), correction_address(session.id, table=file))
         Attachments(view, lambda: name)
-    ImportedTestForm(session, view).show(name)
+    ImportedTestForm(session, view, name).show()
 
 
 ONCE: Final = ("site", "spot", "tool", "plate", "edge_angle_deg")
@@ -65,37 +64,32 @@ FEW: Final = 40
 class ImportedTestForm:
     """Form of one test: fields of the columns with one value, and of each row."""
 
-    def __init__(self, session: CorrectionSession, view: TableView) -> None:
-        self._view = view
+    def __init__(self, session: CorrectionSession, view: TableView, name: str) -> None:
+        self._view, self._name = view, name
         self._table = session.tables[view.file]
         columns = (column for column in view.form.known if column in self._table.columns)
         self._columns = [column for column in columns if column not in (view.form.key, *LEFT_ALONE)]
         self._fields: dict[tuple[int, ...], dict[str, Field]] = {}
 
-    def show(self, name: str) -> None:
-        """Show the current cells of a test."""
-        test, rows = self._view.test(name), self._table.tests[name]
+    def show(self) -> None:
+        """Show the current cells of the test."""
+        test, rows = self._view.test(self._name), self._table.tests[self._name]
         cells = test.rows[0].cells
         cancelled = next(filter(None, (cells.get(cell_key(line, "status"), "") for line in rows)), "")
         self._view.clear()
         with self._view.form_place:
-            heading(Message("Test {name}", name=name))
+            heading(Message("Test {name}", name=self._name))
             if test.cancelled or cancelled:
                 sentence(Message("Cancelled: {value}", value=test.cancelled or cancelled), "bad")
-            with form("", sends=lambda: self._ask_correction(name)):
+            with form("", sends=self._ask_correction):
                 self._draw_fields(tuple(rows), cells)
             self._ask = ui.element("div")
-            asking_button(Message("Correct"), lambda: self._ask_correction(name), "main")
+            asking_button(Message("Correct"), self._ask_correction, "main")
         with self._view.changes_place:
-            changes(
-                self._view,
-                test,
-                self._ask,
-                lambda: self.show(name),
-                is_unanswered=lambda: self._is_unanswered(name),
-                cancelled=bool(cancelled),
-            )
-        self._view.live_results.follow(name, cells.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
+            is_unanswered, in_file = self._is_unanswered, bool(cancelled)
+            changes(self._view, test, self._ask, self.show, is_unanswered=is_unanswered, cancelled=in_file)
+        site = cells.get(cell_key(min(rows), "site"), "")  # a file may lack the column
+        self._view.live_results.follow(self._name, site)
 
     def _draw_fields(self, lines: tuple[int, ...], cells: Mapping[str, str]) -> None:
         one_value = [column for column in self._columns if len({cells[cell_key(line, column)] for line in lines}) == 1]
@@ -123,25 +117,21 @@ class ImportedTestForm:
         numeric = any(rule.name == column for rule in self._view.form.numbers)
         return field(words, text, numeric=numeric, optional=not text)
 
-    def _is_unanswered(self, name: str) -> bool:
+    def _is_unanswered(self) -> bool:
         """True if a cell is changed and not confirmed, or rejected; the question is asked again."""
-        changed = self._changed(self._view.test(name).rows[0].cells)
-        if changed and self._ask_correction(name):
+        changed = self._changed(self._view.test(self._name).rows[0].cells)
+        if changed and self._ask_correction():
             self._view.say(UNANSWERED, "bad")
         return changed is None or bool(changed)
 
-    def _ask_correction(self, name: str) -> bool:
+    def _ask_correction(self) -> bool:
         """Ask for the reason of changed cells; False if a cell is rejected."""
-        test = self._view.test(name)
-        stored = test.rows[0].cells
-        changed = self._changed(stored)
+        test = self._view.test(self._name)
+        row = test.rows[0]
+        changed = self._changed(row.cells)
         if changed is None:
             return False
-        columns = {key: self._view.label(key.split("/", 1)[1]) for key in changed}
-        texts = {key: (number_text(stored[key]), number_text(new)) for key, new in changed.items()}
-        lines = list(dict.fromkeys(change_message(columns[key], *pair) for key, pair in texts.items()))
-        row, show = (test, test.rows[0]), lambda: self.show(name)
-        return ask_correction(self._view, self._ask, row, changed, lines=lines, show=show, leave=show)
+        return ask_correction(self._view, self._ask, (test, row), changed, show=self.show, leave=self.show)
 
     def _changed(self, stored: Mapping[str, str]) -> dict[str, str] | None:
         """Changed cells by key; None if one is rejected."""
