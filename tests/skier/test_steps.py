@@ -15,12 +15,12 @@ from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.edges import ForceMap
 from skisnow.skier.plan import AHEAD, STEP, Gravity, HalfWaves, Planned, RecedingLine, with_run_out
 from skisnow.skier.posture import AHEAD as FORE
-from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, PITCH, RIGHT_TOE, RISE, STANCE
+from skisnow.skier.posture import ASIDE, HIP, HIP_DAMPING, LEFT_EDGE, PITCH, RIGHT_TOE, RISE, STANCE, YIELDING_INERTIA
 from skisnow.skier.seen import seen_at
 from skisnow.skier.yaw import (
     BODY,
     BODY_RATE,
-    FACING,
+    FACES_DOWN,
     HIPS,
     SHIFT,
     SHIFT_ACCELERATION,
@@ -147,6 +147,16 @@ def test_limits_of_range_rate_and_torque_hold() -> None:
     assert free.rates[HIP] == 0.0
 
 
+def test_skis_without_torque_keep_their_rate_under_a_leaning_body_but_for_the_damping() -> None:
+    """Leaning by 45° the hips turn by √2 times the difference of the rates about the normal."""
+    for body_rate, turn_rate in ((0.5, 0.5), (0.1, -0.2)):
+        body, dt = posture(), 0.005
+        body.numbers[ASIDE], body.rates[HIP] = HEIGHT, math.sqrt(2.0) * (body_rate - turn_rate)
+        body.step(Command((0.0, 0.0), hip_torque=0.0), saw(body_rate=body_rate, turn_rate=turn_rate), dt)
+        kept = 1.0 - dt * HIP_DAMPING / 4.0 / YIELDING_INERTIA
+        assert body.rates[HIP] == pytest.approx(math.sqrt(2.0) * (body_rate - turn_rate) * kept)
+
+
 def test_legs_give_way_to_a_load_that_is_off_and_put_a_lifted_ski_down() -> None:
     body, dt = posture(leg_yielding=1.0), 0.005
     body.step(Command((0.0, 0.0), pressure=0.02), saw(pressure=0.07), dt)
@@ -232,7 +242,7 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
     """The first input of the whole problem solved at once, as one system of normal equations."""
     body, rng = Body(75.0, 7.4, 2.1, HEIGHT), np.random.default_rng(3)
     n = len(AHEAD)
-    planned = Planned(3.0 * np.sin(3.0 * AHEAD), 0.4 * np.cos(3.0 * AHEAD))
+    planned = Planned(3.0 * np.sin(3.0 * AHEAD), 0.8 * np.cos(3.0 * AHEAD))
     heading, slip = planned.course + 0.2, np.full(n, 0.2)
     gain = yaw_gain(planned, heading, slip, body, 9.5, 7.0)
     state = np.append(0.2 * rng.standard_normal(6), 1.0)
@@ -243,6 +253,7 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
     leant = (aside / np.hypot(aside, HEIGHT)) ** 2
     turns = np.clip(-np.gradient(7.4 * side * leant, STEP) - 2.4 * np.tanh(planned.force / 2.0) - 40.0 * aside, -30, 30)
     damping = 0.5 * np.minimum(40.0, 0.245 * np.abs(75.0 * planned.force) / (7.0 * 0.2))
+    facing = planned.course - np.clip(planned.course, -FACES_DOWN, FACES_DOWN)
     steps = _dynamics(75.0 * planned.force, turns, damping, 2.1)
     for k in range(n + 1):
         last = k == n
@@ -251,7 +262,7 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
         weight = math.sqrt(5.0) if last else 1.0
         for row, wish, scale in (
             ([1, 0, 0, 0, 0, 0], heading[i], SLIP / eager), ([1, 0, -1, 0, 0, 0], 0.0, HIPS),
-            ([0, 0, 1, 0, 0, 0], FACING * planned.course[i], BODY), ([0, 0, 0, 1, 0, 0], 0.0, BODY_RATE),
+            ([0, 0, 1, 0, 0, 0], facing[i], BODY), ([0, 0, 0, 1, 0, 0], 0.0, BODY_RATE),
             ([0, 0, 0, 0, 1, 0], 0.0, SHIFT),
         ):  # fmt: skip
             full = np.append(np.array(row, float), -wish) * weight / scale

@@ -15,7 +15,7 @@ from .plan import AHEAD, Gravity, Plan, Planned
 from .posture import AHEAD as AHEAD_OF_FEET
 from .posture import LEFT_TOE, RIGHT_TOE, STANCE, Command, Posture
 from .seen import Seen
-from .yaw import FACING, Body, heading_ahead, yaw_gain, yaw_state
+from .yaw import Body, heading_ahead, yaw_gain, yaw_state
 
 FORCE_TIME: Final = 0.05
 """Time (s) over which the measured force is smoothed, half a bounce of the body on the snow (modelling assumption)."""
@@ -39,6 +39,8 @@ BY_EDGE: Final = 0.03
 """Shift of the pressure by the loaded edges to the inside, half a ski's width (m)."""
 SLIDING: Final = math.radians(12.0)
 """Edge angle below which it stays under twice the slip, so that a ski does not grip by accident (rule of thumb)."""
+CARRIED: Final = 0.8
+"""Share of the skis' heading to which a blade carries the body along (modelling assumption)."""
 BOUND: Final = 12.75
 """Greatest acceleration that the edges are set for, 1.3 g (m/s²) (modelling assumption)."""
 ROLLING: Final = 0.05
@@ -215,8 +217,8 @@ class SkidControl:
         if over != 0.0:
             torque += 300.0 * over + 25.0 * (seen.body_rate - seen.turn_rate)
         if self._blade.value > 0.5 and abs(posture.edge) > math.radians(3.0):  # a blade carries the body along
-            facing = (1.0 - FACING) * seen.heading
-            turn = seen.body_rate - FACING * seen.turn_rate
+            facing = (1.0 - CARRIED) * seen.heading
+            turn = seen.body_rate - CARRIED * seen.turn_rate
             torque = self.body.yaw * (60.0 * (hip + facing) + 12.0 * turn)
         return torque, float(shift)
 

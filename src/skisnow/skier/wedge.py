@@ -16,7 +16,7 @@ from .edges import ForceMap
 from .plan import Gravity
 from .posture import AHEAD, ASIDE, LEFT_EDGE, RIGHT_EDGE, RIGHT_TOE, STANCE, Command, Posture
 from .seen import Seen
-from .yaw import SKI_INERTIA, Body
+from .yaw import Body
 
 PREFERRED_TOE, GREATEST_TOE = math.radians(25.0), math.radians(30.0)
 """Toe-in of a ski: with more of it edges are flatter and grip less by accident; and its limit (rad)."""
@@ -38,8 +38,8 @@ SCALES = (1.5, 0.7, 0.15, 1.0, 0.5, 2.0, 0.06, 0.4)
 """Errors that cost alike: place aside (m), its rate (m/s), skis and body (rad, rad/s), load (m, m/s)."""
 COSTS, HIPS = (60.0, 40.0, 3.0), 0.35
 """Inputs that cost alike: difference of the edges' forces (N), hips (N m), the load (m/s²); and the hip angle (rad)."""
-DAMPING: Final = 3.0
-"""Of the yaw of the skis (N m s)."""
+PIVOTED, DAMPING = 1.3, 3.0
+"""Yaw inertia of the skis (kg m²), and the damping of their yaw (N m s) (modelling assumptions)."""
 BY_EDGES: Final = 0.7
 """Gain of the edges on the error of balance."""
 GRIP_TIME: Final = 0.3
@@ -192,9 +192,9 @@ def regulator(body: Body, brake: float, stance: float, toe: float) -> FloatArray
     a, b = np.zeros((8, 8)), np.zeros((8, 3))
     for place in (0, 2, 4, 6):
         a[place, place + 1] = 1.0
-    a[1, 2], a[3, 3], a[5, 6] = -brake / body.mass, -DAMPING / SKI_INERTIA, -brake / body.yaw
+    a[1, 2], a[3, 3], a[5, 6] = -brake / body.mass, -DAMPING / PIVOTED, -brake / body.yaw
     b[1, 0] = -cos / body.mass
-    b[3, 0], b[3, 1] = 0.5 * stance * sin / SKI_INERTIA, 1.0 / SKI_INERTIA
+    b[3, 0], b[3, 1] = 0.5 * stance * sin / PIVOTED, 1.0 / PIVOTED
     b[5, 1], b[7, 2] = -1.0 / body.yaw, 1.0
     cost = np.diag([1.0 / each**2 for each in SCALES])
     cost[np.ix_((2, 4), (2, 4))] += np.array([[1.0, -1.0], [-1.0, 1.0]]) / HIPS**2

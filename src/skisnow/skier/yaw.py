@@ -10,23 +10,25 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .plan import STEP, Planned
+from .posture import YIELDING_INERTIA
 from .seen import Seen
 
 SHEAR_SHIFT: Final = 0.46
 """Shift of the force across the skis over that of the load along them, measured over the snow of the race piste."""
-SKI_INERTIA: Final = 1.3
-"""Yaw inertia of both skis with boots about the hips (kg m²) (modelling assumption)."""
+SKI_INERTIA: Final = 1.2
+"""Yaw inertia of both skis about the hips (kg m²) (measured by the moment on the boots); the legs give way besides."""
 FRICTION_ARM: Final = 2.4
 """Yaw moment of the friction on the loaded outer ski (N m) (modelling assumption)."""
 LEANT: Final = 40.0
 """Yaw moment on the body over its lean aside (N m/m) (modelling assumption)."""
 GREATEST_MOMENT: Final = 30.0
 """Of what else turns the body (N m) (modelling assumption)."""
-SLIP, HIPS, BODY_RATE, TORQUE, SHIFT, SHIFT_ACCELERATION, BODY = 0.06, 0.4, 6.0, 100.0, 0.12, 25.0, 0.8
+SLIP, HIPS, BODY_RATE, TORQUE, SHIFT, SHIFT_ACCELERATION, BODY = 0.06, 0.8, 6.0, 100.0, 0.12, 25.0, 0.4
 """Errors that cost alike: slip, hip angle (rad), body rate (rad/s), hip torque (N m), shift (m), its acceleration
-(m/s²) and body heading (rad) (found by trial; half and one and a half times each passes the same gates)."""
-FACING: Final = 0.8
-"""Share of the path's course to which the body turns (found by trial: from 0.4 to 1.2 it passes)."""
+(m/s²) and body heading (rad) (found by trial)."""
+FACES_DOWN: Final = math.radians(35.0)
+"""Course up to which the body faces down the slope, as the snow can hardly turn skis and body together; beyond it the
+body turns along (rad) (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +65,7 @@ def yaw_gain(
     damping = 0.5 * np.minimum(40.0, 0.245 * np.abs(force) / (max(speed, 2.0) * np.maximum(np.abs(slip), 0.15)))
     eager = np.minimum(1.0, np.abs(planned.force) / 1.962) + 0.1
     step = _dynamics(force, turns, damping, body.yaw)
-    costs = _costs(eager / SLIP**2, heading, FACING * planned.course)
+    costs = _costs(eager / SLIP**2, heading, planned.course - np.clip(planned.course, -FACES_DOWN, FACES_DOWN))
     ahead, gain, inverse, dot = 5.0 * costs[-1, :7, :7], np.zeros((2, 7)), np.empty((2, 2)), np.dot
     for cost, onward, back in zip(costs[::-1], step[::-1], step.transpose(0, 2, 1)[::-1], strict=True):
         both = dot(dot(back, ahead), onward)
@@ -92,13 +94,18 @@ def yaw_state(seen: Seen, ahead: float, ahead_rate: float) -> FloatArray:
 
 
 def _dynamics(force: FloatArray, turns: FloatArray, damping: FloatArray, inertia: float) -> FloatArray:
-    """State after each step over state and inputs, (steps, 7, 9)."""
-    rates = np.zeros((len(force), 7, 9))
+    """State after each step over state and inputs, (steps, 7, 9).
+
+    The inertia with which hips give way counts twice: the body gets the moment that turns it.
+    """
+    rates, whole = np.zeros((len(force), 7, 9)), SKI_INERTIA + YIELDING_INERTIA
     rates[:, [0, 2, 4], [1, 3, 5]] = 1.0
-    rates[:, 1, 4] = SHEAR_SHIFT * force / SKI_INERTIA
-    rates[:, 1, 1] = -np.minimum(1.0 / STEP, damping / SKI_INERTIA)
-    rates[:, 3, 4], rates[:, 3, 6] = -force / inertia, turns / inertia
-    rates[:, 1, 7], rates[:, 3, 7], rates[:, 5, 8] = 1.0 / SKI_INERTIA, -1.0 / inertia, 1.0
+    rates[:, 1, 4], rates[:, 1, 7] = SHEAR_SHIFT * force / whole, 1.0 / whole
+    rates[:, 1, 1] = -np.minimum(1.0 / STEP, damping / whole)
+    rates[:, 3] = YIELDING_INERTIA / inertia * rates[:, 1]
+    rates[:, 3, 4] -= force / inertia
+    rates[:, 3, 6], rates[:, 5, 8] = turns / inertia, 1.0
+    rates[:, 3, 7] -= 1.0 / inertia
     rates[:, 0:5:2] += 0.5 * STEP * rates[:, 1:6:2]
     return np.eye(7, 9) + STEP * rates
 
