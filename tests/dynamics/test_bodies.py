@@ -69,7 +69,7 @@ FILES = (
     "dynamics/moving_boots.cpp",
     "dynamics/statics.cpp",
     "dynamics/steps.cpp",
-    "beam/along.cpp",
+    "beam/along.hpp",
     "contact/tangent_kernels.hpp",
 )
 SOURCES = "\n".join((CORE / name).read_text("utf-8") for name in FILES)

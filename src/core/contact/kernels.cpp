@@ -1,5 +1,11 @@
-// One instruction set's kernels. SKISNOW_LANES names their namespace, SKISNOW_WIDTH is the number of lanes.
-#include "contact/kernels.hpp"
+// Sections, pressure and forces over lanes of lines. Compiled once for each instruction set: SKISNOW_LANES names its
+// namespace, SKISNOW_WIDTH is the number of lanes.
+//
+// Equations: docs/methods/contact.md; the names in brackets there are those of the functions in these headers.
+#include "contact/force_kernels.hpp"
+#include "contact/line_kernels.hpp"
+#include "contact/mark_kernels.hpp"
+#include "contact/tangent_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {
 
