@@ -158,7 +158,7 @@ class SnowContact {
   void march(int k, GrooveLines& lines, const Situation& to);
   void find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to);
   void march_where_needed(int k, const Situation& to);
-  void remember(int k, GrooveLines& lines, bool is_eased) const;
+  void remember(int k, GrooveLines& lines, bool is_eased);
   void press_base(int k, std::int64_t line, GrooveLines& lines) const;
   void press_deepest(int k, std::int64_t line, GrooveLines& lines) const;
 };

@@ -27,6 +27,7 @@ extern const Kernels SET{.name = SKISNOW_NAME(SKISNOW_LANES),
                          .square_depths = square_depths<Width>,
                          .mark = mark<Width>,
                          .drag_anchors = drag_anchors<Width>,
+                         .find_vertices = find_vertices<Width>,
                          .band = {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling,
                                   add_coupled, combine, add_congruent}};
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "contact/contact.hpp"
 
@@ -87,12 +86,12 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
 
 // Update of a section when its pose is accepted.
 struct Touch {
-  const Runner& runner;
   const Base& s;
   int i;
   const Snow& snow;
   GrooveLines& lines;
   int slot;
+  double to_end;  // see `press_deepest`
 
   double edge_place(int k) const { return s[GRIP_PLACE][i] + s[of_edge(LEFT_X, k)][i]; }
   double edge_depth(int k) const { return s[of_edge(LEFT_DEPTH, k)][i]; }
@@ -100,21 +99,15 @@ struct Touch {
   // Whether an edge was in the snow at the last accepted pose.
   bool was_in_snow(int k) const { return lines.values[MARKED][slot] > 0.5 && of_line(LEFT_MARK_DEPTH, k) > 0.0; }
 
-  // [deepest] The base where it was deepest since it was marked last. Over the way w from 0 to 1 the depth at each
-  // share of the width is a parabola d₀ + (d₁ - d₀) w + b w (1 - w), b half the way times the change of the climb.
-  // Where its vertex at 1 - u lies on the way, it is u² b deeper than d₁. Without it the ground misses b/6 in the mean.
-  // The slope at the end is that of the base there: past a kink, after which the base is straight, there is no vertex.
+  // The base where it was deepest since it was marked last: [deepest] of the kernels, with b and `to_end` as there.
   bool press_deepest(Ground& ground) const {
-    const int deeper = edge_depth(0) > edge_depth(1) ? 0 : 1;
+    if (to_end == NO_VERTEX) return false;
     const double bend =
         0.5 * (lines.values[MARK_STATION][slot] - s[STATION][i]) * (s[DEPTH_CLIMB][i] - lines.values[MARK_CLIMB][slot]);
-    if (!was_in_snow(deeper) || !(edge_depth(deeper) > 0.0) || !(bend > 0.0)) return false;
-    const double to_end = bend + s[LINE_NORMAL_2][i] * rise_beside_mean();
     double u[2], aside[2];
     for (int k = 0; k < 2; k++)
       u[k] = 0.5 * (to_end + of_line(LEFT_MARK_DEPTH, k) - edge_depth(k)),
       aside[k] = of_line(LEFT_MARK, k) - edge_place(k);
-    if (std::max(u[0], u[1]) <= 0.0 || std::min(u[0], u[1]) >= bend) return false;
     u[0] /= bend, u[1] /= bend;
     const double left = s[LEFT_X][i], right = s[RIGHT_X][i], per_width = 1.0 / (left - right);
     const auto at = [&](const double* of, double x) { return (of[0] * (x - right) + of[1] * (left - x)) * per_width; };
@@ -134,20 +127,6 @@ struct Touch {
       out.depth[out.count] = depth + share * share * bend;
     }
     return press_undelayed(out, lines.delayed[std::size_t(slot)], ground);
-  }
-
-  // How much higher the unbent base is at the mark than here beyond the mean of both slopes: 0 for a parabola.
-  double rise_beside_mean() const {
-    const double a = lines.values[MARK_STATION][slot], b = s[STATION][i];
-    const auto unbent = [&](double station) {
-      const double place = std::clamp((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0);
-      const int whole = std::min(int(place), runner.places - 2);
-      const double *row = runner.table.data() + ROW * std::size_t(whole), *next = row + ROW, beyond = place - whole;
-      return std::pair(row[2] + beyond * (next[2] - row[2]), row[3] + beyond * (next[3] - row[3]));
-    };
-    const auto [height_a, slope_a] = unbent(a);
-    const auto [height_b, slope_b] = unbent(b);
-    return height_a - height_b - 0.5 * (a - b) * (slope_a + slope_b);
   }
 
   // The wet base and the way of one of its edges in the snow since it was marked last.
@@ -206,7 +185,8 @@ struct Touch {
 void SnowContact::press_base(int k, std::int64_t line, GrooveLines& lines) const {
   const Base& s = sections(k).base;
   const int i = s.index(line);
-  if (s.touches(i)) Touch{runner(k), s, i, *snow_, lines, lines.slot(line)}.press_base();
+  const int slot = lines.slot(line);
+  if (s.touches(i)) Touch{s, i, *snow_, lines, slot, scratch_[std::size_t(slot)]}.press_base();
 }
 
 // The ground of a line takes the base only where it was deepest since its mark.
@@ -215,14 +195,15 @@ void SnowContact::press_deepest(int k, std::int64_t line, GrooveLines& lines) co
   const int i = s.index(line), slot = lines.slot(line);
   if (!s.touches(i)) return;
   Ground ground = lines.ground(slot);
-  if (!Touch{runner(k), s, i, *snow_, lines, slot}.press_deepest(ground)) return;
+  if (!Touch{s, i, *snow_, lines, slot, scratch_[std::size_t(slot)]}.press_deepest(ground)) return;
   ground.simplify(snow_->knot_area * s[DEEPEST][i] * (s[WET_TO][i] - s[WET_FROM][i]), KNOTS);
   lines.keep(slot, ground);
 }
 
 // All grounds take the base; then the marks follow it.
-void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
+void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) {
   const Sections& s = sections(k);
+  kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
   for (std::int64_t n = lines.first; n < lines.end; n++) press_base(k, n, lines);
   kernels_->mark(*snow_, s.base, nullptr, is_eased ? &s.edge : nullptr, lines);
 }
@@ -305,15 +286,17 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   find_needed(lines, std::sqrt(dot(way, way)), runner(k), end);
   if (needed_.empty()) return;
   Before& before = before_[std::size_t(k)];
-  for (const std::int64_t n : needed_) before.lines.push_back(lines.line(lines.slot(n)));
+  for (const std::int64_t n : needed_) before.lines.emplace_back(lines, lines.slot(n));
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, &to.motions[std::size_t(k)], to.dt, double(part) / parts, on_way_);
     kernels_->find_sections(runner(k), on_way_, lines, is_needed_.data(), s.base);
+    kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
     for (const std::int64_t n : needed_) press_base(k, n, lines);
     kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
   }
   kernels_->find_sections(runner(k), end, lines, is_needed_.data(), s.base);
+  kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
   for (const std::int64_t n : needed_) press_deepest(k, n, lines);
   kernels_->drag_anchors(*snow_, s.base, is_needed_.data(), lines);
 }

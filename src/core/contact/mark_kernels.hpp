@@ -118,4 +118,34 @@ void drag_anchors(const Snow& snow, const Base& s, const double* of, GrooveLines
   });
 }
 
+// [deepest] Where a base was deepest since it was marked last. Over the way w from 0 to 1 the depth at each share of
+// the width is a parabola d₀ + (d₁ - d₀) w + b w (1 - w), b half the way times the change of the climb. Where its
+// vertex at 1 - u lies on the way, it is u² b deeper than d₁. Without it the ground misses b/6 in the mean. The slope
+// at the end is that of the base there: past a kink, after which the base is straight, there is no vertex. So the chord
+// counts as much deeper as the unbent base is higher at the mark than here beyond the mean of both slopes: 0 for a
+// parabola. By slot, 2 u + d₁ - d₀ of a line with a vertex on the way, else NO_VERTEX.
+template <class V>
+void find_vertices(const Runner& runner, const Base& s, const GrooveLines& lines, double* out) {
+  for_lanes<V>(s, lines, [&](int i, int j) {
+    if (!s.wants(Base::SECTIONS, i)) return;
+    const auto before = [&](LineField field) { return load<V>(lines.values[field] + j); };
+    const V depth[2] = {load<V>(s[LEFT_DEPTH] + i), load<V>(s[RIGHT_DEPTH] + i)};
+    const V deep[2] = {before(LEFT_MARK_DEPTH), before(RIGHT_MARK_DEPTH)};
+    const MaskOf<V> on_left = depth[0] > depth[1];
+    const V at_mark = before(MARK_STATION), here = load<V>(s[STATION] + i);
+    const V bend = 0.5 * (at_mark - here) * (load<V>(s[DEPTH_CLIMB] + i) - before(MARK_CLIMB));
+    const MaskOf<V> bends = (before(MARKED) > 0.5) & (select(on_left, deep[0], deep[1]) > 0.0) &
+                            (maximum(depth[0], depth[1]) > 0.0) & (bend > 0.0);
+    store(out + j, all<V>(NO_VERTEX));
+    if (!any(bends)) return;
+    V then[ROW], now[ROW];
+    read_table(runner, at_mark, then), read_table(runner, here, now);
+    const V rise = then[2] - now[2] - 0.5 * (at_mark - here) * (then[3] + now[3]);
+    const V to_end = bend + load<V>(s[LINE_NORMAL_2] + i) * rise;
+    const V u[2] = {0.5 * (to_end + deep[0] - depth[0]), 0.5 * (to_end + deep[1] - depth[1])};
+    const MaskOf<V> is_on_way = bends & (maximum(u[0], u[1]) > 0.0) & (minimum(u[0], u[1]) < bend);
+    store(out + j, select(is_on_way, to_end, all<V>(NO_VERTEX)));
+  });
+}
+
 }  // namespace skisnow::SKISNOW_LANES

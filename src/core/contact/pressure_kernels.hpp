@@ -35,6 +35,7 @@ struct CutGround {
     return (load<V>(lines.values[MARKED] + j) > 0.5) & (load<V>(lines.values[of_edge(LEFT_MARK_DEPTH, k)] + j) > 0.0);
   }
   MaskOf<V> is_there() const { return from < to; }
+  bool meets(V low, V high) const { return any((from < high) & (to > low) & is_there()); }
   V at(V x) const { return depth + slope * (x - edge); }
 };
 
@@ -142,19 +143,17 @@ struct GroundPieces {
   MaskOf<V> is_cut[MOST];
   int count = 0;
 
-  // A piece between two places; over what both edges have cut the deeper of both.
+  // A piece between two places that a cut meets; over what both edges have cut the deeper of both.
   SKISNOW_INLINE GroundPieces(const CutGrounds<V>& cuts, V low, V high, V lift, V rise, const Pressure<V>& on) {
     end = high;
     for (int k = 1; k >= 0; k--) {
       const CutGround<V>& each = cuts.of[k];
-      const MaskOf<V> meets = (each.from < high) & (each.to > low) & each.is_there();
-      if (!any(meets)) continue;
+      if (!each.meets(low, high)) continue;
       // up to where the left edge's cut begins the right edge's counts
       const V border = k == 0 ? high : select(cuts.of[0].is_there(), inside(cuts.of[0].from, low, high), high);
       add_cut(each, low, border, lift, rise, on);
       low = border;
     }
-    if (count == 0) add(low, lift, rise);
   }
 
  private:
@@ -202,6 +201,10 @@ SKISNOW_INLINE void add_ground(const GrooveLines& lines, int j, V edge, V wet_fr
     if (!is_virgin) {
       const V ground = load<V>(slope + BLOCK * k);
       lift = load<V>(depth + BLOCK * k) - ground * from - out.depth, rise = ground - out.fall;
+    }
+    if (!cuts.of[0].meets(low, high) && !cuts.of[1].meets(low, high)) {
+      out.add(low, high, lift, rise, nullptr, all_lanes<V>(false));
+      continue;
     }
     const GroundPieces<V> pieces(cuts, low, high, lift, rise, out);
     for (int n = 0; n < pieces.count; n++)

@@ -54,6 +54,23 @@ struct Shapes {
   }
 };
 
+// The unbent base at one station of each lane: half width, its slope, height, its slope. The ski's table is linear
+// between its places. Returns the places before the stations.
+template <class V>
+SKISNOW_INLINE WholeParts<V> read_table(const Runner& runner, V station, V (&shape)[ROW]) {
+  const V place = table_place(runner, station);
+  const WholeParts<V> at(minimum(place, all<V>(runner.places - 2.0)));
+  const V beyond = place - at.value();
+  Row rows[WIDTH<V>];
+  for (int lane = 0; lane < WIDTH<V>; lane++) {
+    const double* row = runner.table.data() + ROW * at[lane];
+    const Row here = load<Row>(row);
+    rows[lane] = here + beyond[lane] * (load<Row>(row + ROW) - here);
+  }
+  transpose<V>(rows, shape);
+  return at;
+}
+
 // The base at one station of each lane, bent with the beam.
 template <class V>
 struct BentBase {
@@ -61,24 +78,16 @@ struct BentBase {
   V element, length, in_element;    // element of the beam, its length, place in it from the front
   V sine{}, cosine, twist_slope{};  // sine, cosine and slope of the twist
 
-  // The ski's table is linear between its places. The element of a place is also that of the stations behind it; in
-  // front of that element's first node they are in the one before.
+  // The element of a place in the table is also that of the stations behind it; in front of that element's first node
+  // they are in the one before.
   SKISNOW_INLINE BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
-    const V place = table_place(runner, station);
-    const WholeParts<V> at(minimum(place, all<V>(runner.places - 2.0)));
-    const V beyond = place - at.value();
+    const WholeParts<V> at = read_table(runner, station, shape);
     int number[WIDTH<V>];
-    Row rows[WIDTH<V>], nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
+    Row nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
     const auto take_element = [&](int lane, int e) {
       number[lane] = e, nodes[lane] = load<Row>(runner.element_rows.data() + ROW * e);
     };
-    for (int lane = 0; lane < WIDTH<V>; lane++) {
-      const double* row = runner.table.data() + ROW * at[lane];
-      const Row here = load<Row>(row);
-      rows[lane] = here + beyond[lane] * (load<Row>(row + ROW) - here);
-      take_element(lane, runner.element[std::size_t(at[lane])]);
-    }
-    transpose<V>(rows, shape);
+    for (int lane = 0; lane < WIDTH<V>; lane++) take_element(lane, runner.element[std::size_t(at[lane])]);
     V row[ROW];
     transpose<V>(nodes, row);
     if (any(station > row[0])) {
@@ -380,21 +389,21 @@ template <class V>
 void cross_grip(const Runner& runner, const Pose& pose, Base& s) {
   constexpr double LONGEST = 0.1;  // correction (m)
   constexpr int STEPS = 2;
-  for (int i = 0; i < s.count(); i += WIDTH<V>) {
-    if (!s.wants(Base::STATIONS, i)) continue;
-    const Vector<V> from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
-    const V crossing = from.x + (from.y * ahead.y + from.z * ahead.z) / ahead.x;
-    V station = crossing, side{}, way{};
-    for (int step = 0; step < STEPS; step++) {
-      const V on_ski = within(station, runner.tail, runner.tip);
+  for (int step = 0; step < STEPS; step++)  // outside: lines next to each other wait for no result of each other
+    for (int i = 0; i < s.count(); i += WIDTH<V>) {
+      if (!s.wants(Base::STATIONS, i)) continue;
+      const Vector<V> from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
+      const V crossing = from.x + (from.y * ahead.y + from.z * ahead.z) / ahead.x;
+      const V on_ski = within(step == 0 ? crossing : load<V>(s[STATION] + i), runner.tail, runner.tip);
       const BentBase<V> base(runner, pose, on_ski);
       Cut<V> c(base, on_ski, s, i);
-      c.side = side = grip_side(base, on_ski, c.from, c.ahead, c.normal);
+      c.side = grip_side(base, on_ski, c.from, c.ahead, c.normal);
       c.find_grip();
-      way = c.way_to_line(), station = on_ski + within(way, -LONGEST, LONGEST);
+      const V way = c.way_to_line(), station = on_ski + within(way, -LONGEST, LONGEST);
+      const bool is_last = step + 1 == STEPS;
+      store(s[STATION] + i, is_last ? select(absolute(way) < LONGEST, station, crossing) : station);
+      store(s[GRIP_REACH] + i, c.side);
     }
-    store(s[STATION] + i, select(absolute(way) < LONGEST, station, crossing)), store(s[GRIP_REACH] + i, side);
-  }
 }
 
 // [cut_base] The bent base over each line and its plane section: grip and edges, directions, where the base is wet.

@@ -193,8 +193,11 @@ struct Kernels {
   // marks of a base on its lines, see mark_kernels.hpp; `of`, by slot, and `eased` of `mark` may be null
   void (*mark)(const Snow&, const Base&, const double* of, const EdgeHold* eased, GrooveLines&);
   void (*drag_anchors)(const Snow&, const Base&, const double* of, GrooveLines&);
+  void (*find_vertices)(const Runner&, const Base&, const GrooveLines&, double* out);
   BandKernels band;
 };
+
+constexpr double NO_VERTEX = -1e300;
 
 const Kernels& kernels();                        // the widest that this processor has
 const Kernels* kernels_named(const char* name);  // null: not in this library, or not on this processor

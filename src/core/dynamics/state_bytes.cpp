@@ -121,7 +121,7 @@ Archive Archive::read(ByteReader& in) {
 void GrooveLines::write(ByteWriter& out) const {
   out.whole(first), out.whole(end);
   for (std::int64_t n = first; n < end; n++) {
-    Line line = this->line(slot(n));
+    Line line(*this, slot(n));
     pass_line(out, line);
     pass_delayed(out, delayed[std::size_t(line.slot)]);
     out.number(energy_[std::size_t(line.slot)]), out.number(counted_[std::size_t(line.slot)]);
@@ -131,7 +131,7 @@ void GrooveLines::write(ByteWriter& out) const {
 void GrooveLines::read(ByteReader& in) {
   first = in.whole(-MOST_LINES, MOST_LINES), end = in.whole(first, first + capacity() - BLOCK);
   for (std::int64_t n = first; n < end; n++) {
-    Line line{slot(n), {}, {}};
+    Line line(*this, slot(n));
     pass_line(in, line);
     put_back(line);
     pass_delayed(in, delayed[std::size_t(line.slot)]);

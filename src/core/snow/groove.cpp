@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace skisnow {
 
@@ -110,11 +111,23 @@ constexpr double ALIKE = 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are a
 }  // namespace
 
 Ground& Ground::operator=(const Ground& other) {
-  if (this == &other) return *this;
-  count = other.count;
-  std::copy_n(other.place, count, place);
-  std::copy_n(other.depth, count, depth);
+  if (this != &other) take(other, other.count);
   return *this;
+}
+
+// Take the first knots of another ground. No branch depends on the number of the few that a line keeps.
+void Ground::take(const Ground& other, int knots) {
+  count = knots;
+  std::memcpy(place, other.place, KNOTS * sizeof *place), std::memcpy(depth, other.depth, KNOTS * sizeof *depth);
+  for (int j = KNOTS; j < count; j++) place[j] = other.place[j], depth[j] = other.depth[j];
+}
+
+// Number of knots before a place, without branches as well.
+int Ground::before(double at) const {
+  int out = 0;
+  for (int j = 0; j < KNOTS; j++) out += int(j < count) & int(place[j] < at);
+  for (int j = KNOTS; j < count; j++) out += place[j] < at;
+  return out;
 }
 
 void Ground::append(double at, double deep) {
@@ -137,8 +150,7 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
 Ground Ground::replaced(const double* at, const double* deep, int knots, int kept) const {
   const double from = at[0], to = at[knots - 1];
   Ground out;
-  for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
-  out.count = kept;
+  out.take(*this, kept);
   if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
   if (kept > 0) out.append(from, Reader(place, depth, count, kept, from).left());
   for (int j = 0; j < knots; j++) out.append(at[j], deep[j]);
@@ -153,11 +165,9 @@ Ground Ground::replaced(const double* at, const double* deep, int knots, int kep
 bool Ground::press(const double* at, const double* deep, int knots) {
   const double from = at[0], to = at[knots - 1];
   if (!(to - from > THIN)) return false;
-  int kept = 0;
-  while (kept < count && place[kept] < from) kept++;
+  const int kept = before(from);
   Ground out;
-  for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
-  out.count = kept;
+  out.take(*this, kept);
   if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
   Reader ground(place, depth, count, kept, from), pressed(at, deep, knots, 0, from);
   Merge merge(out, from, ground.left());

@@ -4,6 +4,8 @@
 // virgin. Two knots at one place are a wall.
 #pragma once
 
+#include <algorithm>
+
 namespace skisnow {
 
 constexpr int KNOTS = 16;       // that a line keeps
@@ -15,7 +17,7 @@ struct Ground {
   double place[ROOM];
   double depth[ROOM];
 
-  Ground() = default;
+  Ground() { std::fill_n(place, KNOTS, 0.0), std::fill_n(depth, KNOTS, 0.0); }  // `take` copies all of these
   Ground(const Ground& other) { *this = other; }
   Ground& operator=(const Ground& other);
 
@@ -39,6 +41,8 @@ struct Ground {
   double squared() const;
 
  private:
+  void take(const Ground& other, int knots);
+  int before(double at) const;
   Ground replaced(const double* at, const double* deep, int knots, int kept) const;
   void drop(int knot, double* size);
 };

@@ -78,11 +78,8 @@ Vector3 GrooveLines::lateral(int slot) const { return cross(get(*this, NORMAL_X,
 
 Ground GrooveLines::ground(int slot) const {
   Ground out;
-  for (int j = 0; j < knots[std::size_t(slot)]; j++) {
-    const auto at = std::size_t(tile(slot, j));
-    out.place[j] = place[at];
-    out.depth[j] = depth[at];
-  }
+  const double *places = place.data() + tile(slot, 0), *depths = depth.data() + tile(slot, 0);
+  for (int j = 0; j < knots[std::size_t(slot)]; j++) out.place[j] = places[BLOCK * j], out.depth[j] = depths[BLOCK * j];
   out.count = knots[std::size_t(slot)];
   return out;
 }
@@ -117,10 +114,8 @@ void GrooveLines::fill(int slot, int from, int to) {
   }
 }
 
-GrooveLines::Line GrooveLines::line(int slot) const {
-  Line out{slot, {}, ground(slot)};
-  for (int field = 0; field < LINE_FIELDS; field++) out.values[field] = values[LineField(field)][slot];
-  return out;
+GrooveLines::Line::Line(const GrooveLines& lines, int slot) : slot(slot), ground(lines.ground(slot)) {
+  for (int field = 0; field < LINE_FIELDS; field++) values[field] = lines.values[LineField(field)][slot];
 }
 
 void GrooveLines::put_back(const Line& line) {

@@ -71,8 +71,8 @@ class GrooveLines {
     int slot;
     double values[LINE_FIELDS];
     Ground ground;
+    Line(const GrooveLines& lines, int slot);
   };
-  Line line(int slot) const;
   void put_back(const Line& line);
   Track track(std::int64_t number, int strip, double time) const;  // as it would be left at a time
 
