@@ -1,8 +1,9 @@
-"""python -m benchmarks.design_derivatives [search|cost|kinks|places]: exact derivatives of a carve, and their search.
+"""python -m benchmarks.design_derivatives [search|settings|cost|kinks|places]: exact derivatives of carves, and search.
 
 ``search``: a robust design with exact derivatives and with finite differences: five variables, three snows, the worst
 deviation from 12 m, a limit of the grip. Solver, starts and tolerances are the same. Six sets of eight starts; all ways
 run in turn, twice, and the shorter time counts; of the differences that step of three which takes the least time.
+``settings``: each setting of the search (design/descent.py) times ½ and 2, with the first set of starts.
 ``cost``: results and new skis, in Newton iterations of the same equilibrium and in equilibria.
 ``kinks``: how near 1,000 everyday questions are to a change of state.
 ``places``: answers with the usual places across of the groove against those with 75.
@@ -26,6 +27,7 @@ from skisnow.carving.outputs import OUTPUTS
 from skisnow.carving.result import radius_at_boot
 from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives
 from skisnow.carving.solve import Solution, _core_ski, refined, solved
+from skisnow.design import descent
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.problem import Search
 from skisnow.design.search import begins_of, searched_starts
@@ -105,6 +107,23 @@ def compare_searches(repetitions: int = 2) -> None:
         total = np.min if name == "objective" else np.sum
         ratios = [total(differences) / total(exact), *(differences / exact)]
         print(f"{name:12}", *(f"{ratio:9.5g}" for ratio in ratios))
+
+
+def vary_settings() -> None:
+    """Print equilibria and objective with each setting of the search halved and doubled."""
+    settings = [name for name, value in vars(descent).items() if isinstance(value, int | float) and name.isupper()]
+
+    def row(name: str) -> str:
+        _, equilibria, objective = searched(Evaluator(design_task(TASK | {"seed": SEEDS[0]})))
+        return f"{name:28} {equilibria:6.0f} {objective:.9g}"
+
+    print(row("as they are"), flush=True)
+    for name in settings:
+        value = getattr(descent, name)
+        for factor in (0.5, 2):
+            setattr(descent, name, type(value)(factor * value))
+            print(row(f"{name} x {factor}"), flush=True)
+        setattr(descent, name, value)
 
 
 def _least_ms(call: Callable[[], object]) -> float:
@@ -220,5 +239,6 @@ def compare_places(count: int = 60) -> None:
 
 
 if __name__ == "__main__":
-    commands = {"search": compare_searches, "cost": print_costs, "kinks": count_kinks, "places": compare_places}
+    commands = {"search": compare_searches, "settings": vary_settings, "cost": print_costs, "kinks": count_kinks}
+    commands["places"] = compare_places
     commands[(sys.argv[1:] or ["search"])[0]]()
