@@ -45,39 +45,35 @@ def misspelt(name: str) -> str:
     return name[:1] + name
 
 
-TOML = [
-    pytest.param(reader, number, id=f"{reader.name}, line {number + 1}")
-    for reader in BY_NAME.values()
-    if reader.target.endswith(".toml")
-    for number, line in enumerate(reader.files()[reader.target].decode().splitlines())
-    if re.match(r"\s*(\w+\s*=|\[)", line) and FREE_NAME not in line
-]
-
-
-@pytest.mark.parametrize(("reader", "number"), TOML)
-def test_misspelt_key_of_a_toml_file(reader: Reader, number: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", [name for name, reader in BY_NAME.items() if reader.target.endswith(".toml")])
+def test_misspelt_key_of_a_toml_file(name: str, tmp_path: Path) -> None:
+    reader = BY_NAME[name]
     lines = reader.files()[reader.target].decode().splitlines()
-    (key,) = re.findall(r"^\s*(\w+)\s*=", lines[number]) or re.findall(r"(\w+)\"?\]+$", lines[number])
-    lines[number] = lines[number].replace(key, misspelt(key), 1)
-    reader.lay(tmp_path, "\n".join(lines).encode())
+    for number, line in enumerate(lines):
+        if re.match(r"\s*(\w+\s*=|\[)", line) and FREE_NAME not in line:
+            (key,) = re.findall(r"^\s*(\w+)\s*=", line) or re.findall(r"(\w+)\"?\]+$", line)
+            wrong = [*lines[:number], line.replace(key, misspelt(key), 1), *lines[number + 1 :]]
+            reader.lay(tmp_path, "\n".join(wrong).encode())
+            assert key in rejection(reader, tmp_path).replace(misspelt(key), "")
+
+
+def rejection(reader: Reader, folder: Path) -> str:
     if reader.target.endswith("campaign.toml"):
-        said = "\n".join(map(str, check_campaign((tmp_path / reader.target).parent)))
-    else:
-        with pytest.raises(SkisnowError) as caught:
-            reader.read(tmp_path)
-        said = str(caught.value)
-    assert key in said.replace(misspelt(key), "")
+        return "\n".join(map(str, check_campaign((folder / reader.target).parent)))
+    with pytest.raises(SkisnowError) as caught:
+        reader.read(folder)
+    return str(caught.value)
 
 
-@pytest.mark.parametrize("key", SCENARIO_KEYS)
-def test_misspelt_key_of_a_scenario(key: str) -> None:
-    section, _, name = key.partition(".")
-    matches = rf"\b{re.escape(name)}\b"
-    with pytest.raises(ParameterError, match=matches):
-        TURN.with_(**{misspelt(name): 1.0})
-    for word in (f"{section}.{misspelt(name)}", misspelt(name)):
+def test_misspelt_key_of_a_scenario() -> None:
+    for key in SCENARIO_KEYS:
+        section, _, name = key.partition(".")
+        matches = rf"\b{re.escape(name)}\b"
         with pytest.raises(ParameterError, match=matches):
-            load_scenario("carved-46m", changes={word: 1.0})
+            TURN.with_(**{misspelt(name): 1.0})
+        for word in (f"{section}.{misspelt(name)}", misspelt(name)):
+            with pytest.raises(ParameterError, match=matches):
+                load_scenario("carved-46m", changes={word: 1.0})
 
 
 def public_names() -> Iterator[tuple[str, Any]]:

@@ -143,16 +143,16 @@ def test_an_alignment_with_less_overlap_is_not_preferred() -> None:
 
 
 def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> None:
-    """Of 10 intervals with a coverage of 95 % at least 8 contain the truth in 988 of 1000 cases."""
+    """Of 6 intervals with a coverage of 95 % at least 5 contain the truth in 967 of 1000 cases."""
     inside, errors = [], []
-    for seed in range(5):
+    for seed in range(3):
         for size in (0.01, 0.1):
             noise = size * np.random.default_rng(seed).normal(size=(100, 2))
             measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
             motion = fit_motion(line_of(slalom(ALONG)[:, :2]), line_of(measured), start=True, heading=True)
             inside.append(abs(motion.turned - 0.4) < present(motion.turned_error))
             errors.append(present(motion.turned_error))
-    assert sum(inside) >= 8
+    assert sum(inside) >= 5
     assert np.mean(errors[1::2]) == pytest.approx(10.0 * np.mean(errors[::2]), rel=0.3)
 
 
@@ -277,10 +277,16 @@ def test_inclination_of_a_track(slope: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("azimuth", "slope", "side", "noise"), [(15.0, 8.0, 1.0, 0.0), (135.0, 20.0, -1.0, 0.02), (290.0, 35.0, 1.0, 0.02)]
+    ("source", "azimuth", "slope", "side", "noise"),
+    [
+        ("given", 15.0, 8.0, 1.0, 0.0),
+        ("given", 290.0, 35.0, 1.0, 0.02),
+        ("run", 135.0, 20.0, -1.0, 0.02),
+        ("heights", 15.0, 8.0, 1.0, 0.0),
+        ("heights", 135.0, 20.0, -1.0, 0.02),
+    ],
 )
-@pytest.mark.parametrize("source", ["given", "run", "heights"])
-def test_the_heading_of_a_run_on_a_slope(azimuth: float, slope: float, side: float, noise: float, source: str) -> None:
+def test_the_heading_of_a_run_on_a_slope(source: str, azimuth: float, slope: float, side: float, noise: float) -> None:
     run, measured = run_of(side), on_map(run_of(side), azimuth, slope, noise)
     if source == "run":
         run = replace(run, slope_angle=math.radians(slope))

@@ -85,15 +85,20 @@ def random_polyline(random: np.random.Generator, knots: int) -> FloatArray:
     return np.column_stack([place, random.uniform(1e-3, 5e-3, knots)])
 
 
-@pytest.mark.parametrize("seed", range(200))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_deeper_of_both_is_kept(seed: int) -> None:
-    """At places between all knots; the mirror image has the same depths."""
+    """Of 67 pairs each, at places between all knots; the mirror image has the same depths."""
     random = np.random.default_rng(seed)
-    ground, pressed = random_polyline(random, int(random.integers(2, 9))), random_polyline(random, 3)
-    if seed % 3 == 0:
-        pressed[:, 1] += 5e-3  # deeper everywhere
-    if seed % 3 == 1:
-        pressed[:, 1] *= 0.1  # mostly less deep
+    for _ in range(67):
+        ground, pressed = random_polyline(random, int(random.integers(2, 9))), random_polyline(random, 3)
+        if seed == 0:
+            pressed[:, 1] += 5e-3  # deeper everywhere
+        if seed == 1:
+            pressed[:, 1] *= 0.1  # mostly less deep
+        require_deeper_ground(ground, pressed)
+
+
+def require_deeper_ground(ground: FloatArray, pressed: FloatArray) -> None:
     found, changed = core.pressed_ground(ground, pressed)
     at = np.linspace(-0.031, 0.031, 4001)
     at = at[np.abs(at[:, None] - np.append(ground[:, 0], pressed[:, 0])).min(axis=1) > 1e-6]

@@ -7,8 +7,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 import skisnow
 from skisnow.forces import friction, penetration, shear
 
@@ -38,41 +36,34 @@ def sections(documented: Any) -> dict[str, str]:
     return dict(zip(parts[1::2], parts[2::2], strict=True))
 
 
-def parameters(function: Any) -> set[str]:
-    """Names that a caller may give."""
-    return set(inspect.signature(function).parameters)
+def test_every_function() -> None:
+    for name, function in FUNCTIONS.items():
+        parts = sections(function)
+        assert {"Returns", "See Also", "References"} <= set(parts), name
+        listed = {each.strip() for line in re.findall(r"^(\w.*)$", parts.get("Parameters", ""), re.MULTILINE)
+                  for each in line.split(" : ")[0].split(",")}  # fmt: skip
+        assert set(inspect.signature(function).parameters) - listed == set(), name
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_every_function(name: str) -> None:
-    function = FUNCTIONS[name]
-    told = sections(function)
-    assert {"Returns", "See Also", "References"} <= set(told)
-    asked = parameters(function)
-    listed = {each.strip() for line in re.findall(r"^(\w.*)$", told.get("Parameters", ""), re.MULTILINE)
-              for each in line.split(" : ")[0].split(",")}  # fmt: skip
-    assert asked <= listed, asked - listed
+def test_every_class() -> None:
+    undocumented = [name for name, each in CLASSES.items() if "See Also" not in sections(each)]
+    assert [name for name in undocumented if not issubclass(CLASSES[name], Exception)] == []
 
 
-@pytest.mark.parametrize("name", CLASSES)
-def test_every_class(name: str) -> None:
-    assert "See Also" in sections(CLASSES[name]) or issubclass(CLASSES[name], Exception)
+def test_every_law() -> None:
+    headings = {"Attributes", "See Also", "Notes", "References", "Examples"}
+    assert [law.__name__ for law in LAWS if not headings <= set(sections(law))] == []
 
 
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
-def test_every_law(law: Any) -> None:
-    assert {"Attributes", "See Also", "Notes", "References", "Examples"} <= set(sections(law))
-
-
-@pytest.mark.parametrize("documented", [*PUBLIC.values(), *LAWS], ids=[*PUBLIC, *(law.__name__ for law in LAWS)])
-def test_what_is_named_beside_it_exists(documented: Any) -> None:
+def test_what_is_named_beside_it_exists() -> None:
     """A name moved or misspelt would be a dead end."""
-    for line in sections(documented).get("See Also", "").strip().splitlines():
-        module, _, rest = line.split(" : ")[0].strip().removeprefix("skisnow.").rpartition(".")
-        place: Any = skisnow
-        for part in [*filter(None, module.split(".")), rest]:
-            assert hasattr(place, part), line
-            place = getattr(place, part)
+    for documented in (*PUBLIC.values(), *LAWS):
+        for line in sections(documented).get("See Also", "").strip().splitlines():
+            module, _, rest = line.split(" : ")[0].strip().removeprefix("skisnow.").rpartition(".")
+            place: Any = skisnow
+            for part in [*filter(None, module.split(".")), rest]:
+                assert hasattr(place, part), line
+                place = getattr(place, part)
 
 
 def test_references_of_publications_have_their_doi() -> None:

@@ -247,8 +247,8 @@ def test_boots_move_with_even_acceleration() -> None:
 
 
 def swing(legs: float, **changes: object) -> float:
-    """Rms (N) of the load of the outer ski between 5 and 12 Hz in the first turns, with legs that so give way (1/s)."""
-    run = simulate(tall(Skier(leg_yielding=legs), duration_s=3.5, **changes))
+    """Rms (N) of the load of the outer ski between 5 and 12 Hz in the first turn, with legs that so give way (1/s)."""
+    run = simulate(tall(Skier(leg_yielding=legs), duration_s=2.0, **changes))
     turning = run.time > 1.0
     load, rates = run.balance.load[turning], np.fft.rfftfreq(int(turning.sum()), float(np.median(np.diff(run.time))))
     parts = np.fft.rfft(load - load.mean(axis=0), axis=0)

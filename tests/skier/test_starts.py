@@ -78,7 +78,7 @@ def require_landing(scenario: Scenario) -> None:
 
 
 def test_a_skier_lands_behind_a_kicker() -> None:
-    require_landing(named("kicker, 10°").scenario(Start()))
+    require_landing(named("kicker, 10°").scenario(Start()).with_(duration_s=2.8))
 
 
 @pytest.mark.slow
