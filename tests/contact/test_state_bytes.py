@@ -20,7 +20,7 @@ from .test_c_library import BAD, OK, SHAPE, Made, figure_of_eight, library, made
 __all__ = ["library", "made"]
 LEVEL = [np.eye(3)]
 EVERY = 5  # of the rows of the figure of eight
-BEFORE, FURTHER = 950, 1000  # steps up to the state and from there on; the ski crosses its own track at 1,000
+BEFORE, FURTHER = 950, 200  # steps up to the state and from there on; the ski crosses its own track at 1,000
 HEAD, FOOT = 32, 8
 
 
