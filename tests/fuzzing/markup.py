@@ -4,8 +4,7 @@ import re
 from random import Random
 from typing import Final
 
-from . import values
-from .texts import Mutation, bulk, bytes_of, encoding, lines, piece, scaled, text_of
+from .texts import Mutation, bulk, bytes_of, encoding, lines, piece, replace_one, scaled, text_of
 
 _CONTENT: Final = re.compile(r">([^<>]+)<")
 _ATTRIBUTE: Final = re.compile(r"=\"([^\"]*)\"")
@@ -30,23 +29,14 @@ _DOCTYPES: Final = (
 )
 
 
-def _in_place(rng: Random, pattern: re.Pattern[str], data: bytes) -> bytes:
-    text = text_of(data)
-    found = list(pattern.finditer(text))
-    if not found:
-        return data
-    at = rng.choice(found)
-    return bytes_of(text[: at.start(1)] + values.word(rng) + text[at.end(1) :])
-
-
 def content(rng: Random, data: bytes) -> bytes:
     """The text of an element becomes an extreme one."""
-    return _in_place(rng, _CONTENT, data)
+    return replace_one(rng, _CONTENT, data)
 
 
 def attribute(rng: Random, data: bytes) -> bytes:
     """An attribute's value becomes an extreme one."""
-    return _in_place(rng, _ATTRIBUTE, data)
+    return replace_one(rng, _ATTRIBUTE, data)
 
 
 def element(rng: Random, data: bytes) -> bytes:

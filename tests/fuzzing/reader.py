@@ -67,3 +67,22 @@ class Reader:
             place = folder / name
             place.parent.mkdir(parents=True, exist_ok=True)
             place.write_bytes(target if name == self.target and target is not None else content)
+
+
+def single_file(
+    name: str,
+    content: bytes | Callable[[], Files],
+    read: Callable[[Path], object],
+    mutations: tuple[Mutation, ...],
+    *covers: str,
+    target: str = "",
+    beside: Files | None = None,
+    needs: tuple[str, ...] = (),
+) -> Reader:
+    """Reader that takes the path of its target, called like the reader unless `target` is given."""
+    file = target or name
+    files = content if callable(content) else lambda: {file: content, **(beside or {})}
+    return Reader(
+        name=name, target=file, files=files, read=lambda folder: read(folder / file), mutations=mutations,
+        covers=covers, needs=needs,
+    )  # fmt: skip

@@ -9,6 +9,7 @@ from . import values
 
 Mutation = Callable[[Random, bytes], bytes]
 _TOKEN: Final = re.compile(r"[^\s,;=<>\"'*$\[\]]+")
+_NUMBER: Final = re.compile(r"\d+(?:\.\d+)?")
 _MANY: Final = (2, 3, 50, 2000)
 _LARGE: Final = 3_000_000
 """Bytes of a large piece."""
@@ -26,25 +27,30 @@ def bytes_of(text: str) -> bytes:
     return text.encode("utf-8", "surrogateescape")
 
 
+def replace_one(rng: Random, pattern: re.Pattern[str], data: bytes, new: Callable[[str], str] | None = None) -> bytes:
+    """The last group of one match becomes an extreme word, or another text that is made from it."""
+    text = text_of(data)
+    matches = list(pattern.finditer(text))
+    if not matches:
+        return data
+    match, group = rng.choice(matches), pattern.groups
+    word = new(match[group]) if new else values.word(rng)
+    return bytes_of(text[: match.start(group)] + word + text[match.end(group) :])
+
+
 def token(rng: Random, data: bytes) -> bytes:
     """One word or number becomes an extreme one."""
-    text = text_of(data)
-    found = list(_TOKEN.finditer(text))
-    if not found:
-        return data
-    at = rng.choice(found)
-    return bytes_of(text[: at.start()] + values.word(rng) + text[at.end() :])
+    return replace_one(rng, _TOKEN, data)
 
 
 def scaled(rng: Random, data: bytes) -> bytes:
     """One number is shifted by a power of ten, or a digit of it changes."""
-    text = text_of(data)
-    found = list(re.finditer(r"\d+(?:\.\d+)?", text))
-    if not found:
-        return data
-    at = rng.choice(found)
-    new = f"{at[0]}e{rng.choice((-300, -20, -6, -3, 3, 6, 20, 150, 300))}" if rng.random() < 0.6 else at[0][::-1]
-    return bytes_of(text[: at.start()] + new + text[at.end() :])
+
+    def other(number: str) -> str:
+        powers = (-300, -20, -6, -3, 3, 6, 20, 150, 300)
+        return f"{number}e{rng.choice(powers)}" if rng.random() < 0.6 else number[::-1]
+
+    return replace_one(rng, _NUMBER, data, other)
 
 
 def _separator(text: str) -> str:

@@ -3,7 +3,6 @@
 import csv
 import io
 from argparse import Namespace
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -28,7 +27,7 @@ from tests.interop.pits import full_pit
 from ..archives import archive
 from ..binaries import BINARY
 from ..markup import XML
-from ..reader import Files, Reader
+from ..reader import Files, Reader, single_file
 from ..texts import TABLE, TEXT, Mutation
 from ..trees import TOML
 
@@ -157,23 +156,6 @@ def _of_campaign(file: str, mutations: tuple[Mutation, ...], *covers: str) -> Re
     )
 
 
-def _single(
-    name: str,
-    content: Callable[[], bytes],
-    read: Callable[[Path], object],
-    mutations: tuple[Mutation, ...],
-    *covers: str,
-) -> Reader:
-    return Reader(
-        name=name,
-        target=name,
-        files=lambda: {name: content()},
-        read=lambda folder: read(folder / name),
-        mutations=mutations,
-        covers=covers,
-    )
-
-
 READERS = (
     _of_campaign("campaign.toml", TOML),
     _of_campaign("penetration.csv", TABLE),
@@ -190,24 +172,20 @@ READERS = (
         mutations=archive(_member),
         covers=("campaign.reading.campaign:_read_folder", "_support.user_files.workbook:workbook_sheets"),
     ),
-    Reader(
-        name="two-sites.xlsx",
-        target="two-sites.xlsx",
-        files=lambda: {"two-sites.xlsx": (SAMPLES / "two-sites.xlsx").read_bytes()},
-        read=lambda folder: campaign._ask_questions(Namespace(file=folder / "two-sites.xlsx"), Answers(), asks=False),
-        mutations=archive(_member),
-        covers=("cli.campaign:_ask_questions",),
+    single_file(
+        "two-sites.xlsx",
+        (SAMPLES / "two-sites.xlsx").read_bytes(),
+        lambda path: campaign._ask_questions(Namespace(file=path), Answers(), asks=False),
+        archive(_member),
+        "cli.campaign:_ask_questions",
     ),
-    Reader(
-        name="[import]",
-        target="campaign.toml",
-        files=_imported,
-        read=lambda folder: read_template(folder / "campaign.toml"),
-        mutations=TOML,
-        covers=("campaign.importing.answers:read_template",),
+    single_file(
+        "[import]", _imported, read_template, TOML, "campaign.importing.answers:read_template", target="campaign.toml"
     ),
-    _single("pit.caaml", lambda: _pit()["pit.caaml"], read_caaml, XML, "campaign.caaml:read_caaml"),
-    _single("station.smet", lambda: _SMET, lambda path: repr(read_smet(path)), TEXT, "campaign.smet:read_smet"),
-    _single("20260203.pnt", _recording, read_snow_micro_pen, BINARY, "campaign.snow_micro_pen:read_snow_micro_pen"),
-    _single("densities.csv", lambda: _DENSITY, read_density_layers, TABLE, "campaign.snow_pit:read_density_layers"),
+    single_file("pit.caaml", _pit, read_caaml, XML, "campaign.caaml:read_caaml"),
+    single_file("station.smet", _SMET, lambda path: repr(read_smet(path)), TEXT, "campaign.smet:read_smet"),
+    single_file(
+        "20260203.pnt", _recording(), read_snow_micro_pen, BINARY, "campaign.snow_micro_pen:read_snow_micro_pen"
+    ),
+    single_file("densities.csv", _DENSITY, read_density_layers, TABLE, "campaign.snow_pit:read_density_layers"),
 )

@@ -20,7 +20,7 @@ from tests.interop.c3d_files import c3d_bytes
 from ..binaries import BINARY
 from ..markup import XML
 from ..netcdf import NETCDF
-from ..reader import Reader
+from ..reader import Reader, single_file
 from ..texts import TEXT
 
 _TRC = b"""PathFileType\t4\t(X/Y/Z)\ttwo.trc
@@ -81,26 +81,24 @@ def _drawn(folder: Path) -> object:
 
 
 READERS = (
-    Reader(
-        name="markers.trc", target="m.trc", files=lambda: {"m.trc": _TRC}, mutations=TEXT,
-        read=lambda folder: repr(read_trc(folder / "m.trc")), covers=("interop.opensim.markers:read_trc",),
+    single_file(
+        "markers.trc", _TRC, lambda path: repr(read_trc(path)), TEXT, "interop.opensim.markers:read_trc",
+        target="m.trc",
     ),
-    Reader(
-        name="motion.mot", target="m.mot", files=lambda: {"m.mot": _MOT}, mutations=TEXT,
-        read=lambda folder: repr(read_motion(folder / "m.mot")), covers=("interop.opensim.table:read_motion",),
+    single_file(
+        "motion.mot", _MOT, lambda path: repr(read_motion(path)), TEXT, "interop.opensim.table:read_motion",
+        target="m.mot",
     ),
-    Reader(
-        name="markers.c3d", target="a.c3d", files=_c3d, mutations=BINARY,
-        read=lambda folder: repr(read_c3d(folder / "a.c3d")), covers=("interop.opensim.c3d:read_c3d",),
+    single_file(
+        "markers.c3d", _c3d, lambda path: repr(read_c3d(path)), BINARY, "interop.opensim.c3d:read_c3d", target="a.c3d"
     ),
     Reader(
         name="run.nc", target="run.nc", files=run_files, mutations=NETCDF, read=_drawn,
         covers=("replay.run_file:replay_of_file",),
     ),
-    Reader(
-        name="replay bytes", target="replay.bin", files=_replay, mutations=BINARY,
-        read=lambda folder: replay_of_bytes((folder / "replay.bin").read_bytes()),
-        covers=("replay.binary:replay_of_bytes",),
+    single_file(
+        "replay bytes", _replay, lambda path: replay_of_bytes(path.read_bytes()), BINARY,
+        "replay.binary:replay_of_bytes", target="replay.bin",
     ),
     Reader(
         name="report.html", target="report.html", files=lambda: {"report.html": _PAGE}, mutations=XML,

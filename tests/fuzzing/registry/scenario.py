@@ -1,6 +1,5 @@
 """Readers of scenarios and of what they name: skis, slopes, snow, boots; and of identify's sections."""
 
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,8 +21,8 @@ from skisnow.scenario.snow_map import read_snow_layers, read_snow_map
 from tests.forces.friction.test_friction import STATES
 
 from ..binaries import BINARY
-from ..reader import Reader
-from ..texts import TABLE, TEXT, Mutation, token
+from ..reader import Reader, single_file
+from ..texts import TABLE, TEXT, token
 from ..trees import JSON, TOML
 
 _SKI = b"""name = "mine"
@@ -181,27 +180,11 @@ def _geotiff() -> dict[str, bytes]:
         return {"heights.tif": place.read_bytes()}
 
 
-def _of(
-    name: str,
-    content: bytes | Callable[[], dict[str, bytes]],
-    read: Callable[[Path], object],
-    mutations: tuple[Mutation, ...],
-    *covers: str,
-    beside: dict[str, bytes] | None = None,
-    needs: tuple[str, ...] = (),
-) -> Reader:
-    files = content if callable(content) else lambda: {name: content, **(beside or {})}
-    return Reader(
-        name=name, target=name, files=files, read=lambda folder: read(folder / name), mutations=mutations,
-        covers=covers, needs=needs,
-    )  # fmt: skip
-
-
 _SLALOM = scenario_text("slalom-20-gates").encode()
 _TABLED = {"ski.toml": _WITH_TABLE, "table.csv": _SKI_TABLE}
 _SHAPED = {"ski.toml": _WITH_SHAPE, "ski-def.json": _DESIGN}
 READERS = (
-    _of("scenario.toml", _SLALOM, load_scenario, TOML, "scenario.reading:load_input"),
+    single_file("scenario.toml", _SLALOM, load_scenario, TOML, "scenario.reading:load_input"),
     Reader(
         name="identify.toml", target="identify.toml", read=_read_identify, mutations=TOML,
         files=lambda: {"identify.toml": scenario_text("carved-46m").encode() + _IDENTIFY, "cells.csv": _CELLS},
@@ -211,10 +194,9 @@ READERS = (
         name="changes", target="changes", files=lambda: {"changes": _CHANGES}, read=_read_changes,
         mutations=(token, *TOML), covers=("scenario.keys:parse_change",),
     ),
-    _of("ski.toml", _SKI, _used_ski, TOML, "ski.file_values:file_values"),
-    Reader(
-        name="ski with table.toml", target="ski.toml", files=lambda: _TABLED, mutations=TOML,
-        read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.file_values:file_values",),
+    single_file("ski.toml", _SKI, _used_ski, TOML, "ski.file_values:file_values"),
+    single_file(
+        "ski with table.toml", lambda: _TABLED, _used_ski, TOML, "ski.file_values:file_values", target="ski.toml"
     ),
     Reader(
         name="ski table.csv", target="table.csv", files=lambda: _TABLED, mutations=TABLE,
@@ -224,23 +206,25 @@ READERS = (
         name="ski-def.json", target="ski-def.json", files=lambda: _SHAPED, mutations=JSON,
         read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.monkeycam:_read_board",),
     ),
-    _of("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_read_results"),
-    _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
-    _of(
+    single_file("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_read_results"),
+    single_file("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
+    single_file(
         "terrain.csv", _TERRAIN, _used_terrain, TABLE,
         "scenario.raster_formats:read_grid_table", "scenario.terrain:_read_heights",
     ),
-    _of("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.raster_formats:read_esri_ascii"),
+    single_file("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.raster_formats:read_esri_ascii"),
     Reader(
         name="terrain.prj", target="terrain.prj", files=lambda: {"terrain.asc": _ESRI, "terrain.prj": _SYSTEM},
         read=lambda folder: _used_terrain(folder / "terrain.asc"), mutations=TEXT,
         covers=("scenario.raster_formats:read_esri_ascii",),
     ),
-    _of("heights.tif", _geotiff, _used_terrain, BINARY, "scenario.raster_formats:read_geotiff", needs=("rasterio",)),
-    _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
-    _of("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
-    _of("friction.toml", _FRICTION, _used_friction, TOML, "forces.friction.law_file:read_friction_file"),
-    _of("layers.csv", _LAYERS, _used_layers, TABLE, "scenario.snow_map:read_snow_layers"),
-    _of("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots:read_boots"),
-    _of("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots:read_boots"),
+    single_file(
+        "heights.tif", _geotiff, _used_terrain, BINARY, "scenario.raster_formats:read_geotiff", needs=("rasterio",)
+    ),
+    single_file("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
+    single_file("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
+    single_file("friction.toml", _FRICTION, _used_friction, TOML, "forces.friction.law_file:read_friction_file"),
+    single_file("layers.csv", _LAYERS, _used_layers, TABLE, "scenario.snow_map:read_snow_layers"),
+    single_file("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots:read_boots"),
+    single_file("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots:read_boots"),
 )  # fmt: skip

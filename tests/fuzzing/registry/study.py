@@ -14,7 +14,7 @@ from skisnow.studies.table import stored_rows
 
 from ..binaries import BINARY
 from ..databases import SQLITE
-from ..reader import Files, Reader
+from ..reader import Files, Reader, single_file
 from ..texts import TABLE, Mutation
 from ..trees import TOML
 
@@ -130,22 +130,15 @@ _WIDTHS = """x (mm),width (mm),EI (N m²)
 """
 
 READERS = (
-    Reader(
-        name="design.toml", target="design.toml", files=lambda: {"design.toml": _DESIGN.encode()},
-        read=lambda folder: repr(read_design(folder / "design.toml")), mutations=TOML,
-        covers=("design.task:read_design",),
+    single_file("design.toml", _DESIGN.encode(), lambda path: repr(read_design(path)), TOML, "design.task:read_design"),
+    single_file(
+        "measured ski.csv", _WIDTHS.encode(),
+        lambda path: measured_ski(Measured(name="mine", tables=(path,), stations_from="tail", boot=0.8)),
+        TABLE, "design.ski_tables:read_ski_table", target="ski.csv",
     ),
-    Reader(
-        name="measured ski.csv", target="ski.csv", files=lambda: {"ski.csv": _WIDTHS.encode()}, mutations=TABLE,
-        read=lambda folder: measured_ski(
-            Measured(name="mine", tables=(folder / "ski.csv",), stations_from="tail", boot=0.8)
-        ),
-        covers=("design.ski_tables:read_ski_table",),
-    ),
-    Reader(
-        name="study.toml", target="study.toml", files=lambda: {"study.toml": (_STUDY % "table.csv").encode()},
-        read=lambda folder: repr(read_study(folder / "study.toml")), mutations=TOML,
-        covers=("studies.study:read_study",),
+    single_file(
+        "study.toml", (_STUDY % "table.csv").encode(), lambda path: repr(read_study(path)), TOML,
+        "studies.study:read_study",
     ),
     _table("table.csv", TABLE, "studies.table:_read_at_once", "studies.table:stored_rows"),
     _table("table.sqlite", SQLITE, "studies.rows:DatabaseRows.__init__"),

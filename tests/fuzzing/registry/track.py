@@ -10,7 +10,7 @@ from skisnow.track.course.gates_table import read_gate_gaps
 
 from ..binaries import BINARY, sealed_fit, sealed_nmea, sealed_ubx
 from ..markup import XML
-from ..reader import Reader, Seal
+from ..reader import Reader, Seal, single_file
 from ..texts import TABLE, TEXT, Mutation
 from ..track_files import FILES
 
@@ -67,27 +67,18 @@ def _read_line(folder: Path) -> object:
     return read_line(folder / "line.csv", read_course(folder / "course.csv"), (0.0, 0.0))
 
 
+_DATA = ("identification.data:_head", "identification.data_tables:read_table")
 READERS = (
     *map(_track, FILES),
-    Reader(
-        name="photo cells", target="cells.csv", files=lambda: {"cells.csv": _CELLS},
-        read=lambda folder: read_data(folder / "cells.csv"), mutations=TABLE,
-        covers=("identification.data:_head", "identification.data_tables:read_table"),
+    single_file("photo cells", _CELLS, read_data, TABLE, *_DATA, target="cells.csv"),
+    single_file("grooves", _GROOVES, read_data, TABLE, *_DATA, target="grooves.csv"),
+    single_file(
+        "course.csv", _course_folder, lambda path: repr(read_course(path)), TABLE,
+        "track.course.course_file:_read_rows", "_support.spreadsheet_text:csv_rows",
     ),
-    Reader(
-        name="grooves", target="grooves.csv", files=lambda: {"grooves.csv": _GROOVES},
-        read=lambda folder: read_data(folder / "grooves.csv"), mutations=TABLE,
-        covers=("identification.data:_head", "identification.data_tables:read_table"),
-    ),
-    Reader(
-        name="course.csv", target="course.csv", files=_course_folder,
-        read=lambda folder: repr(read_course(folder / "course.csv")), mutations=TABLE,
-        covers=("track.course.course_file:_read_rows", "_support.spreadsheet_text:csv_rows"),
-    ),
-    Reader(
-        name="course.gpx", target="course.gpx", files=_course_folder,
-        read=lambda folder: repr(read_course(folder / "course.gpx")), mutations=XML,
-        covers=("track.course.course_file:read_waypoints",),
+    single_file(
+        "course.gpx", _course_folder, lambda path: repr(read_course(path)), XML,
+        "track.course.course_file:read_waypoints",
     ),
     Reader(
         name="line.csv", target="line.csv", files=_course_folder, read=_read_line, mutations=TABLE,
