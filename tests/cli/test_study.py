@@ -72,32 +72,23 @@ def test_a_map_in_german(which: str, tmp_path: Path) -> None:
 ANGLES = "{ from = 10, to = 60, n = 3 }"
 
 
-def test_study_of_errors_alone_exits_1_names_the_first_and_has_its_table(tmp_path: Path, capsys: Printed) -> None:
+def test_studies_after_a_finished_one(tmp_path: Path, capsys: Printed) -> None:
+    """Errors alone or a slip in what is fixed exit with 1 and keep its table; another one moves the table."""
     path = study_in(tmp_path / "a", SMALL)
     assert main(["study", str(path), "--workers", "1"]) == 0
     finished = (tmp_path / "a/tables/table.csv").read_bytes()
-    path.write_text(SMALL.replace(ANGLES, "[90, 95]"), encoding="utf-8")
-    capsys.readouterr()
-    assert main(["study", str(path), "--workers", "1"]) == 1
-    out, err = capsys.readouterr()
-    assert "points 4 (error 4)" in out
-    assert all(part in err for part in ("row 1: ", "edge_angle_deg", "85"))
-    assert [(each.name, each.read_bytes()) for each in (tmp_path / "a/tables").iterdir()] == [("table.csv", finished)]
-
-
-def test_slip_in_what_is_fixed_touches_nothing(tmp_path: Path, capsys: Printed) -> None:
-    path = study_in(tmp_path / "a", SMALL)
-    assert main(["study", str(path), "--workers", "1"]) == 0
-    finished = (tmp_path / "a/tables/table.csv").read_bytes()
-    path.write_text(SMALL.replace("race-piste", "race-pist"), encoding="utf-8")
-    assert main(["study", str(path), "--workers", "1"]) == 1
-    assert "'race-piste'?" in capsys.readouterr().err
-    assert [(each.name, each.read_bytes()) for each in (tmp_path / "a/tables").iterdir()] == [("table.csv", finished)]
-
-
-def test_another_studys_table_is_kept_and_it_is_reported_where(tmp_path: Path, capsys: Printed) -> None:
-    path = study_in(tmp_path / "a", SMALL)
-    assert main(["study", str(path), "--workers", "1"]) == 0
+    for old, new, words in (
+        (ANGLES, "[90, 95]", ("points 4 (error 4)", "row 1: ", "edge_angle_deg", "85")),
+        ("race-piste", "race-pist", ("'race-piste'?",)),
+    ):
+        capsys.readouterr()
+        path.write_text(SMALL.replace(old, new), encoding="utf-8")
+        assert main(["study", str(path), "--workers", "1"]) == 1
+        printed = "".join(capsys.readouterr())
+        assert all(word in printed for word in words)
+        assert [(each.name, each.read_bytes()) for each in (tmp_path / "a/tables").iterdir()] == [
+            ("table.csv", finished)
+        ]
     path.write_text(SMALL.replace("to = 60", "to = 50"), encoding="utf-8")
     assert main(["study", str(path), "--workers", "1"]) == 0
     assert "table.previous.csv" in capsys.readouterr().err

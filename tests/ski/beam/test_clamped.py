@@ -103,28 +103,18 @@ def test_stations_measure_the_ski() -> None:
     assert np.sum(at.slope * value, axis=1) == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-7)
 
 
-def test_mass_of_the_free_parts() -> None:
-    """Lifting both free parts with linear shape x - clamp: m' ∫ (x - a)² dx of each."""
-    model = clamped(plain_ski(), 0.3, 80)
-    u = np.zeros(model.size)
-    number = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
-    free = number[:, 0] >= 0
-    u[number[free, 0]] = np.abs(model.node[free]) - 0.15
-    u[number[free, 1]] = -np.sign(model.node[free])  # per length of the element's own direction, tip to tail
-    # the clamped node itself cannot turn: the element beside it bends, so only its neighbours count in full
-    value = u @ dense(model.mass) @ u
-    assert value == pytest.approx(1.4 * (0.75**3 + 0.55**3) / 3.0, rel=1e-4)
-
-
-def test_inertia_of_the_free_parts() -> None:
-    """Twist growing as x - clamp: m' W²/12 ∫ (x - a)² dx, a thin strip turning about its middle line."""
+def test_mass_and_inertia_of_the_free_parts() -> None:
+    """Both free parts lifted by x - clamp: m' ∫ (x - a)² dx of each. Twisted so: m' W²/12 of it, as thin strips."""
     model = clamped(plain_ski(width=0.08), 0.3, 80)
-    u = np.zeros(model.size)
+    lifted, twisted = np.zeros((2, model.size))
     number = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
     free = number[:, 0] >= 0
-    u[number[free, 2]] = np.abs(model.node[free]) - 0.15
-    strip = 1.4 * 0.08**2 / 12.0
-    assert u @ dense(model.mass) @ u == pytest.approx(strip * (0.75**3 + 0.55**3) / 3.0, rel=1e-10)
+    lifted[number[free, 0]] = twisted[number[free, 2]] = np.abs(model.node[free]) - 0.15
+    lifted[number[free, 1]] = -np.sign(model.node[free])  # per length of the element's own direction, tip to tail
+    parts, mass = 1.4 * (0.75**3 + 0.55**3) / 3.0, dense(model.mass)
+    # the clamped node itself cannot turn: the element beside it bends, so only its neighbours count in full
+    assert lifted @ mass @ lifted == pytest.approx(parts, rel=1e-4)
+    assert twisted @ mass @ twisted == pytest.approx(0.08**2 / 12.0 * parts, rel=1e-10)
 
 
 def free_frequencies(ski: Ski, elements: int) -> tuple[FloatArray, FloatArray]:
