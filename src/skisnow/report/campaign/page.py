@@ -19,7 +19,7 @@ from ...campaign import Campaign
 from ...estimation import Analysis
 from ...estimation.results import results_pieces
 from ..figures.drawing import Drawing, LeftOut, Picture
-from ..figures.figure_files import Progress, picture_files, render_pictures, silent, write_picture
+from ..figures.figure_files import Progress, picture_files, silent, write_pictures
 from ..figures.style import SiteStyle, site_styles
 from ..formatting import days_words, moment_words, significant
 from ..sheet import bibtex, cited_text, render_template
@@ -120,9 +120,7 @@ def _write(data: ReportData, stage: Path, language: str, report: Progress) -> li
         report(f"table {table.name}")
         write_file(stage / "tables" / f"{table.file_stem}.csv", table_csv(table))
         write_file(stage / "tables" / f"{table.file_stem}.tex", table_latex(table))
-    pictures, missing = campaign_figures(data, language=language, progress=report)
-    for picture in pictures:
-        write_picture(picture, stage / "figures")
+    pictures, missing = _write_figures(data, stage / "figures", language, report)
     report("report.html")
     write_file(stage / "report.html", page(data, tables, pictures, missing, language=language))
     report("results.json")
@@ -250,10 +248,10 @@ def drawers_of(campaign: Campaign) -> tuple[Callable[[ReportData, Sequence[SiteS
     return of_plates + (recorded or (snow_profiles,) * has_profile)
 
 
-def campaign_figures(
-    data: ReportData, *, language: str = ENGLISH, progress: Progress = silent
+def _write_figures(
+    data: ReportData, folder: Path, language: str, progress: Progress
 ) -> tuple[list[Picture], list[LeftOut]]:
-    """Figures for which the campaign has data, and the reasons for the missing ones."""
+    """Write the figures for which the campaign has data; returns them, and the reasons for the missing ones."""
     missing: list[LeftOut] = []
 
     def drawings() -> Iterator[Drawing]:
@@ -265,4 +263,4 @@ def campaign_figures(
             else:
                 missing.append(drawing)
 
-    return render_pictures(drawings(), language=language, progress=progress), missing
+    return write_pictures(drawings(), folder, language=language, progress=progress), missing

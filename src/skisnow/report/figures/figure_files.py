@@ -43,7 +43,8 @@ def write_pictures(
     """
     pictures = render_pictures(drawings, language=language, progress=progress)
     for picture in pictures:
-        write_picture(picture, folder)
+        for ending, content in picture.files.items():
+            write_file(folder / f"{picture.name}.{ending}", content)
     return pictures
 
 
@@ -63,15 +64,6 @@ def render_pictures(
             local_axes(drawing.figure)
             pictures.append(render(drawing))
     return pictures
-
-
-def write_picture(picture: Picture, folder: Path) -> None:
-    """Write all files of a picture.
-
-    Raises OutputError: a file cannot be written.
-    """
-    for ending, content in picture.files.items():
-        write_file(folder / f"{picture.name}.{ending}", content)
 
 
 PNG_WIDTH: Final = 1200

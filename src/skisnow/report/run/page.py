@@ -178,28 +178,25 @@ def _value(value: float | None, over_place: Grid | None, size: float, unit: str)
 
 def outcome_sentences(run: Run) -> list[Markup]:
     """Sentences with the outcome, its remedy, and the main numbers of the run."""
-    sentences = [prose("Outcome: {outcome}. {remedy}", outcome=outcome_words(run.outcome), remedy=run.remedy)]
-    sentences.append(
+    deepest = float(np.nanmax(run.skis.edge_depth)) / MM
+    return [
+        prose("Outcome: {outcome}. {remedy}", outcome=outcome_words(run.outcome), remedy=run.remedy),
         prose(
             "{length} m in {time} s, from {first} to {last} m/s, maximum {most} m/s.",
             length=_number(run.run_length), time=_number(run.simulated_s),
             first=_number(float(run.speed[0])), last=_number(float(run.speed[-1])),
             most=_number(float(np.nanmax(run.speed))),
-        )
-    )  # fmt: skip
-    sentences.append(
+        ),
         prose(
             "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, 5 % of "
             "the time below {lower} m, without the first half second.",
             first=_angle(float(run.heading[0])), last=_angle(float(run.heading[-1])),
             radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
-        )
-    )  # fmt: skip
-    deepest = float(np.nanmax(run.skis.edge_depth)) / MM
-    sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
-    scenario = run.scenario
-    sentences += [prose("Warning: {text}.", text=text) for text in model_limits(scenario.ski).values()]
-    return sentences + _energy_sentences(run)
+        ),
+        prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)),
+        *(prose("Warning: {text}.", text=text) for text in model_limits(run.scenario.ski).values()),
+        *_energy_sentences(run),
+    ]  # fmt: skip
 
 
 def _energy_sentences(run: Run) -> list[Markup]:

@@ -156,14 +156,15 @@ def run_balance(run: Run) -> Figure:
     leans.set_ylim(-max(most, 1.0), max(most, 1.0))
     leans.set_ylabel(Message("lean, edge angle (°)\nto the left +"))
     left = np.cross(np.array([0.0, 0.0, 1.0]), boots.axes[:, :, 0])
-    draw_both(totals, run, run.skis.total_force)
-    totals.set_ylabel(Message("total\nforce (N)"))
-    draw_both(normals, run, run.skis.normal_force)
-    normals.set_ylabel(Message("normal\nforce (N)"))
-    draw_both(sides, run, np.einsum("nka,nka->nk", run.skis.force, left))
-    sides.set_ylabel(Message("side force (N)\nto the left +"))
-    for axes in (leans, totals, normals, sides):
-        axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    forces = (
+        (run.skis.total_force, Message("total\nforce (N)")),
+        (run.skis.normal_force, Message("normal\nforce (N)")),
+        (np.einsum("nka,nka->nk", run.skis.force, left), Message("side force (N)\nto the left +")),
+    )
+    for axes, (values, label) in zip((totals, normals, sides), forces, strict=True):
+        draw_both(axes, run, values)
+        axes.set_ylabel(label)
+    leans.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     for axes in (leans, totals):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
     label_time(sides, run.time)
@@ -172,13 +173,14 @@ def run_balance(run: Run) -> Figure:
 
 
 def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
-    """Draw a quantity of both skis; the axis omits 1 % of peaks."""
+    """Draw a quantity of both skis with a line at 0; the axis omits 1 % of peaks."""
     for ski, (name, colour) in enumerate(zip(SKIS, (BLUE, ORANGE), strict=True)):
         hidden = ski == 0 and np.allclose(values[:, 0], values[:, 1])
         axes.plot(run.time, values[:, ski], color=colour, linewidth=2.4 if hidden else 0.8, label=name)
     low, high = np.quantile(values, [0.005, 0.995])
     room = 0.25 * max(high - low, 1.0)
     axes.set_ylim(low - 0.3 * room, high + room)
+    axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
 
 
 def run_boots(run: Run) -> Figure:
@@ -197,7 +199,6 @@ def run_boots(run: Run) -> Figure:
     for axes, (values, label) in zip(panels, drawn, strict=True):
         draw_both(axes, run, values)
         axes.set_ylabel(label)
-        axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2, frameon=False)
     label_time(panels[-1], run.time)
     figure.align_ylabels()

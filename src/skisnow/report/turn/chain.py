@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -212,38 +212,30 @@ def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandSha
     return BandShares(tuple(keys), *(variance_shares(offset[reached], inputs) for offset in (aside, ahead)))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class BandInput:
     """One input of a band.
 
     key: key of the scenario.
-    measured: True if the campaign measured its spread; otherwise a prior gives it.
+    spread: origin of the spread: ``measured`` by the campaign, or ``prior``.
+    distribution: name of the distribution.
     value: median in the key's unit; None for a prior.
     low, high: ends in the key's unit: of the 95 % interval of a measured input, of the whole range of a prior.
     origin: origin of the range.
     """
 
     key: str
-    measured: bool
+    spread: str
+    distribution: str
     value: float | None
     low: float
     high: float
     origin: str
 
     @property
-    def distribution(self) -> str:
-        """Name of the distribution."""
-        return "log-normal" if self.measured else "log-uniform"
-
-    @property
-    def spread(self) -> str:
-        """Origin of the spread: measured or prior."""
-        return "measured" if self.measured else "prior"
-
-    @property
     def in_words(self) -> str:
         """Spread, distribution and origin."""
-        if self.measured:
+        if self.spread == "measured":
             return Message("measured: log-normal with the 95 % interval of {origin}", origin=self.origin)
         return Message("prior: even in its logarithm; {origin}", origin=self.origin)
 
@@ -251,11 +243,10 @@ class BandInput:
 def band_inputs(chain: TurnChain) -> Iterator[BandInput]:
     """Inputs of the band: first the measured ones, then the priors."""
     for of in chain.measured:
-        yield BandInput(key=of.key, measured=True, value=of.value, low=of.low, high=of.high, origin=chain.site)
+        yield BandInput(of.key, "measured", "log-normal", of.value, of.low, of.high, chain.site)
     own = values_of(chain.nominal.scenario)
     for prior in chain.priors:
-        low, high = prior.ends(own[prior.key])
-        yield BandInput(key=prior.key, measured=False, value=None, low=low, high=high, origin=prior.origin)
+        yield BandInput(prior.key, "prior", "log-uniform", None, *prior.ends(own[prior.key]), prior.origin)
 
 
 SCHEMA_VERSION: Final = 1
@@ -281,18 +272,7 @@ def turn_dict(chain: TurnChain) -> dict[str, Any]:
             "band_across_m": json_number(across),
             "band_along_m": json_number(along),
             "nominal_end_moves_m": json_number(chain.ensemble_error),
-            "inputs": [
-                {
-                    "key": row.key,
-                    "spread": row.spread,
-                    "distribution": row.distribution,
-                    "value": row.value,
-                    "low": row.low,
-                    "high": row.high,
-                    "origin": row.origin,
-                }
-                for row in band_inputs(chain)
-            ],
+            "inputs": [asdict(row) for row in band_inputs(chain)],
             "priors": [
                 {"key": row.key, "low": row.low, "high": row.high, "times_own": row.about, "origin": row.origin}
                 for row in chain.priors

@@ -96,8 +96,9 @@ def _spreads(chain: TurnChain) -> list[Markup]:
     inputs = list(band_inputs(chain))
     if not inputs:
         return []
-    measured = _key_list([row.key for row in inputs if row.measured])
-    assumed = _key_list([row.key for row in inputs if not row.measured])
+    measured, assumed = (
+        _key_list([row.key for row in inputs if row.spread == spread]) for spread in ("measured", "prior")
+    )
     return [
         prose(
             "The band draws {measured} from the intervals that the campaign measured, {assumed} from priors.",
