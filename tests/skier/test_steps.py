@@ -10,6 +10,7 @@ import pytest
 
 from skisnow import Profile, load_scenario, simulate
 from skisnow._support.errors import ParameterError
+from skisnow._support.units import name_with_values
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.edges import ForceMap
@@ -295,6 +296,12 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
 def test_a_controller_that_returns_no_numbers_is_told(command: Any, code: str, fields: dict[str, str]) -> None:
     with raises(ParameterError, code, **fields):
         simulate(TURNS.with_(duration_s=0.1, method="fast"), controller=SimpleNamespace(command=lambda *_: command))
+
+
+def test_a_skier_is_described_by_its_control_without_an_address() -> None:
+    slalom = load_scenario("slalom-15deg")
+    words = name_with_values(BalancedSkier(slalom))
+    assert "control='SkidControl'" in words and " at 0x" not in words
 
 
 def test_the_grip_is_learnt_where_skis_slide() -> None:

@@ -70,6 +70,8 @@ class BalancedSkier:
     ----------
     records
         Input and output of the control at each moment.
+    control
+        Name of the controller's class.
 
     Raises
     ------
@@ -85,9 +87,10 @@ class BalancedSkier:
     The page docs/methods/skier.md.
     """
 
-    scenario: Scenario
-    controller: Controller | None = None
+    scenario: Scenario = field(repr=False)
+    controller: Controller | None = field(default=None, repr=False)
     records: list[BalanceRecord] = field(default_factory=list, repr=False)
+    control: str = field(init=False)
     skier: Skier = field(init=False)
     posture: Posture = field(init=False, repr=False)
     _flies_from: float = field(init=False, repr=False)  # height of the feet (m)
@@ -105,6 +108,7 @@ class BalancedSkier:
         self._flies_from = 0.5 * scenario.ski.tip_width * math.sin(self.skier.greatest_edge)
         self.posture = Posture(self.skier, sledge.centre_of_mass, sledge.stance_width, half)
         self.controller = self.controller or self._built_in()
+        self.control = type(self.controller).__qualname__
 
     def _built_in(self) -> BuiltIn:
         """The control of the scenario's plan or course."""
