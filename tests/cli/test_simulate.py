@@ -120,7 +120,7 @@ def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.Monke
     first = contents()
     assert "replay.html" in first
     with monkeypatch.context() as patched:
-        patched.setattr("skisnow.report.run.page.run_page", interrupted_here)
+        patched.setattr("skisnow.report.run.folder.run_page", interrupted_here)
         assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 130
     assert contents() == first
     assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 0

@@ -137,14 +137,17 @@ RENAMING = ["Rename", "field Name of the run = 'mine'", "button Use this name"]
     ("state", "lines"),
     [("waiting", ["button Cancel"]), ("running", ["[quiet progress] 1.2 s of 5 s", "button Cancel"]), ("failed", [])],
 )
-def test_a_card_shows_how_its_run_stands(desk: Desk, state: Any, lines: list[str]) -> None:
-    page, runs, pressed = desk.open("/replay"), Runs(desk.lab.runs), list[object]()
+def test_a_card_shows_how_its_run_stands(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, state: Any, lines: list[str]
+) -> None:
+    page, runs, cancelled = desk.open("/replay"), Runs(desk.lab.runs), list[str]()
+    monkeypatch.setattr(runs, "cancel", cancelled.append)
     job = Job("mine", "carved-46m", {"run.duration_s": "2", "ski.file": "/a/b"}, "2026", state, "so", "ski: b")
     before = len(page.outline())
 
     def shown() -> None:
         with page.content:
-            _Card(runs, job, lambda *what: pressed.append(what)).show(job)
+            _Card(runs, job, lambda action: action()).show(job)
 
     runs.progress = "1.2 s of 5 s"
     desk.do(shown, page.client)
@@ -156,7 +159,7 @@ def test_a_card_shows_how_its_run_stands(desk: Desk, state: Any, lines: list[str
     ]
     if lines:
         page.press("Cancel mine")
-        assert pressed == [(runs.cancel, "mine")]
+        assert cancelled == ["mine"]
 
 
 def test_a_run_gets_a_name_in_words_that_can_be_changed(desk: Desk) -> None:
