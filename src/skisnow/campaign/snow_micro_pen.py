@@ -233,7 +233,7 @@ def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> Snow
         force=counts * header["force_per_count"],
         sample_distance=distance,
         clock=_recording_time(header["clock"]),
-        date_in_file_name=_date_in(file),
+        date_in_file_name=_date_in_file_name(file),
         latitude_deg=latitude,
         longitude_deg=longitude,
         height=None if height == _NO_HEIGHT_CM or not np.isfinite(height) else height * CM,
@@ -259,7 +259,7 @@ def _recording_time(fields: tuple[int, ...]) -> datetime | None:
         return None
 
 
-def _date_in(name: str) -> date | None:
+def _date_in_file_name(name: str) -> date | None:
     for digits in re.findall(r"(?<!\d)\d{8}(?!\d)", name):
         try:
             return datetime.strptime(digits, "%Y%m%d").replace(tzinfo=UTC).date()

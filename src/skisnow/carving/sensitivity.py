@@ -96,8 +96,8 @@ class CarveRequest:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Direction:
-    """Derivatives of the equations' numbers by a parameter, per its unit."""
+class _ParameterDerivatives:
+    """Derivatives of the equations' inputs (conditions, strength, ski) by one parameter, per its unit."""
 
     numbers: FloatArray
     strength: float = 0.0
@@ -146,7 +146,7 @@ class CarveDerivatives:
     request: CarveRequest
     point: core.CarvePoint = field(init=False)
     at: RefinedCarve = field(init=False)
-    _directions: dict[str, _Direction] = field(default_factory=dict)
+    _directions: dict[str, _ParameterDerivatives] = field(default_factory=dict)
     _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
     _outputs: dict[str, OutputGrowth | None] = field(default_factory=dict)
     _gradients: dict[str, _Gradient] = field(default_factory=dict)
@@ -266,7 +266,7 @@ class CarveDerivatives:
         return self._growth(parameter)[3]
 
     def force_at(self, place: FloatArray) -> FloatArray:
-        """Force per length (N/m) at places (m), linear between the stations."""
+        """Force per length (N/m) of the equilibrium itself at places (m), linear between the stations."""
         return np.interp(place, self._rising_stations, self.at.solution.force_per_length[::-1])
 
     def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
@@ -378,7 +378,7 @@ class CarveDerivatives:
     def _kink_distance(self, name: str) -> float:
         return math.inf if name == "snow.S_f_N_per_mm2" else self._growth(name)[4]
 
-    def _direction(self, name: str) -> _Direction:
+    def _direction(self, name: str) -> _ParameterDerivatives:
         if name not in self._directions:
             if name in CONDITIONS:
                 self._directions[name] = self._direction_of_condition(name)
@@ -387,10 +387,10 @@ class CarveDerivatives:
                 shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
                 numbers = np.zeros(_COUNT)
                 numbers[[_RUNNING, _WIDEST, *_OF_SHAPE[1:]]] = shape.numbers
-                self._directions[name] = _Direction(numbers, 0.0, shape)
+                self._directions[name] = _ParameterDerivatives(numbers, 0.0, shape)
         return self._directions[name]
 
-    def _direction_of_condition(self, name: str) -> _Direction:
+    def _direction_of_condition(self, name: str) -> _ParameterDerivatives:
         conditions, numbers, strength = self.request.conditions, np.zeros(_COUNT), 0.0
         turns = conditions.side_force > 0.0
         if name == "edge_angle_deg":
@@ -409,7 +409,7 @@ class CarveDerivatives:
             numbers[_HARDNESS], numbers[_EXCESS] = N_PER_MM3, conditions.excess / conditions.hardness * N_PER_MM3
         else:
             strength = N_PER_MM2
-        return _Direction(numbers, strength)
+        return _ParameterDerivatives(numbers, strength)
 
 
 def ski_derivatives(asked: Sequence[tuple[CarveDerivatives, str]], names: tuple[str, ...]) -> FloatArray:

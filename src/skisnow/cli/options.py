@@ -185,7 +185,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
 
 
 def checked_scheduler(scheduler: str | None) -> str | None:
-    """The same for a value of the option.
+    """The scheduler of the option if it can be used; warns of a connection that is not encrypted.
 
     Raises ParameterError: as of `scheduler_of`.
     """

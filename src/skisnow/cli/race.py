@@ -53,7 +53,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     model = "a simulated run for each evaluation (default), or a point with mass on the line, in milliseconds"
     parser.add_argument("--model", choices=("skier", "point"), default="skier", help=model)
     _add_search(parser)
-    _add_worth(parser)
+    _add_comparison_options(parser)
     add_workers(parser)
     add_scheduler(parser)
     parser.add_argument("--json", action="store_true", help="print race.json alone to standard output")
@@ -95,7 +95,7 @@ def _add_search(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
 
 
-def _add_worth(parser: argparse.ArgumentParser) -> None:
+def _add_comparison_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--against", action="append", default=[], metavar="SKI", help="another ski on the same line, by name or file"
     )

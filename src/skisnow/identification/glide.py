@@ -145,7 +145,7 @@ def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: f
     stations = np.broadcast_to(np.asarray(station, float), (k, np.shape(station)[-1]))
     h = longest / LEAST_STEPS if math.isinf(line.length) else min(longest / LEAST_STEPS, LONGEST_STEP_ON_PROFILE)
     time, arc_length, speed = _histories(line, glide, h, float(stations.max()), LONGEST_WAIT * longest)
-    times = [_passages(time[:, j], arc_length[:, j], speed[:, j], stations[j]) for j in range(k)]
+    times = [_photo_cell_times(time[:, j], arc_length[:, j], speed[:, j], stations[j]) for j in range(k)]
     crawling = LONGEST_WAIT * longest + (stations - arc_length[-1][:, None]) / CRAWL_SPEED
     return np.where(np.isfinite(times), times, crawling)
 
@@ -201,8 +201,8 @@ def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArr
     return np.where(moved[1] < state[1], np.stack([state[0], state[1], moved[2]]), moved)
 
 
-def _passages(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
-    """Times (s) at the cells; infinite for cells that are not reached."""
+def _photo_cell_times(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
+    """Times (s) at which a simulated glide passes photo cells at stations (m); infinite if it does not."""
     number = np.searchsorted(arc_length, station, side="left") - 1
     reached = number < len(arc_length) - 1
     at = np.clip(number, 0, len(arc_length) - 2)

@@ -26,7 +26,7 @@ START: Final = "start."
 class Problem:
     """Least-squares problem of a search.
 
-    noise: standard deviation of the residuals of each of them: 1 if accuracies are stated, otherwise estimated.
+    noise: standard deviation of the residuals of each set of observations; 1 if accuracies are stated, else estimated.
     """
 
     parameters: tuple[Parameter, ...]

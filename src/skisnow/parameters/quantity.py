@@ -225,10 +225,10 @@ class Quantity:
         if self.infinite and value == "inf":
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
-            return self._checked_number(value)
+            return self._number_of_kind(value)
         raise ParameterError(_OF_ANOTHER_KIND[self.kind]).tag("wrong_kind", name=self.name, value=shown_value(value))
 
-    def _checked_number(self, value: float) -> float | int:
+    def _number_of_kind(self, value: float) -> float | int:
         try:
             number = float(value)
         except OverflowError:

@@ -83,7 +83,7 @@ def replay_of_run(
         run's course).
     Raises ParameterError: the run has no moment, or the gates are not pairs of finite numbers.
     """
-    setting = _setting_of_run(run)
+    setting = _fixed_parts_of_run(run)
     replay = assemble_replay(_arrays(run), setting, title=title, track=track)
     return replay if gates is None else replace(replay, gates=_gates(gates, setting.slope), gate_times=None)
 
@@ -103,7 +103,7 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
     }  # fmt: skip
 
 
-def _setting_of_run(run: Run) -> Setting:
+def _fixed_parts_of_run(run: Run) -> Setting:
     scenario = run.scenario
     contact, sledge = scenario.contact, scenario.sledge
     stress = contact.snow.failure_shear_stress

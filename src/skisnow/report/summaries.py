@@ -35,7 +35,7 @@ def ski_titles(answers: list[Json]) -> list[str]:
 
 
 def carve_summary(contents: Json) -> str:
-    """Inputs, choices of the model, and a table with one column for each ski.
+    """Text for a terminal: inputs, choices of the model, and a table with one column for each ski.
 
     contents: JSON of `skisnow.carving.answer.answers_dict`.
     """

@@ -93,7 +93,7 @@ class Balance:
 
 @dataclass(slots=True)
 class SkidControl:
-    """Skidded turns: the slip brakes, the edge gives the force, the centre of pressure keeps balance.
+    """Control of a skier in skidded turns: slip brakes, edge angles steer, the centre of pressure keeps balance.
 
     Source: The page docs/methods/skier.md.
     """

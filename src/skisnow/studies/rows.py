@@ -279,7 +279,7 @@ def is_text(name: str, keys: Mapping[str, Quantity]) -> bool:
 
 
 def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
-    """Check the values of a row from a database; `texts` marks the columns of texts."""
+    """Check that values of a database row are texts where marked, otherwise numbers, switches, lists or None."""
     for (name, value), text in zip(row.items(), texts, strict=True):
         if value is None or (isinstance(value, str) if text else _is_number(value)):
             continue

@@ -185,7 +185,7 @@ def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
                 "unknown_name", key=key, allowed=suggest_and_list(key, TOP_KEYS)
             )
     subject_ = _make_model(path, values, subject)
-    form = _sampling_form(values)
+    form = _grid_or_latin_hypercube(values)
     fixed = _read_fixed(subject_.named(_read_section(values, "fixed")), subject_.keys)
     varying = _read_section(values, form)
     inputs = subject_.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
@@ -210,7 +210,7 @@ def _make_model(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
     return ScenarioModel(path.parent, word)
 
 
-def _sampling_form(values: Mapping[str, Any]) -> str:
+def _grid_or_latin_hypercube(values: Mapping[str, Any]) -> str:
     forms = [form for form in FORMS if form in values]
     if len(forms) != 1:
         problem = (

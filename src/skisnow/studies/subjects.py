@@ -88,7 +88,7 @@ MOST_TRIED: Final = 100
 
 @dataclass(slots=True, repr=False)
 class CarveModel(ShownFields):
-    """Answers points with one row each. Relative paths start at `folder`."""
+    """Computes the carve of each point of a study, one row each. Relative paths start at `folder`."""
 
     folder: Path
     _sources: Sources = field(init=False)

@@ -192,10 +192,10 @@ def interrupts_ignored() -> Iterator[None]:
 def begin_worker(alive: Connection) -> None:
     """Begin a worker process; it ends when the parent's end of `alive` is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, args=(alive,), daemon=True).start()
+    threading.Thread(target=_exit_when_parent_ends, args=(alive,), daemon=True).start()
 
 
-def _end_with_parent(alive: Connection) -> None:
+def _exit_when_parent_ends(alive: Connection) -> None:
     try:
         alive.recv()
     except (EOFError, OSError):

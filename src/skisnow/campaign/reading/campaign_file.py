@@ -159,7 +159,7 @@ def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], froze
             continue
         shape = SHAPES[shape_name]
         entry.refuse_misspelt(("name", "shape", *shape.lengths))
-        lengths = {length.field: _needed_length(entry, length) for length in shape.lengths.values()}
+        lengths = {length.field: _required_length(entry, length) for length in shape.lengths.values()}
         if name is not None and all(length is not None for length in lengths.values()):
             tools[name] = shape.tool(**lengths)
         if name is not None and not shape.has_edge:
@@ -174,7 +174,7 @@ def _read_plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
     for entry in top.tables("plate"):
         name = _new_name(entry, names)
         entry.refuse_misspelt(("name", "length_mm"))
-        length = _needed_length(entry, _PLATE_LENGTH)
+        length = _required_length(entry, _PLATE_LENGTH)
         if name is not None and length is not None:
             plates[name] = length
     return plates, frozenset(names)
@@ -205,7 +205,7 @@ def _shape_name(entry: TomlValues) -> str | None:
     return None
 
 
-def _needed_length(entry: TomlValues, quantity: Quantity) -> float | None:
+def _required_length(entry: TomlValues, quantity: Quantity) -> float | None:
     if quantity.name not in entry.values:
         entry.refuse(quantity.name, Message("a length in mm above 0"), Message("Add {name}.", name=quantity.name))
     return _in_si(entry, quantity)

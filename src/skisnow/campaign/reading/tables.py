@@ -112,7 +112,7 @@ class TableReading:
         mark = "."
         if text is not None:
             mark = _decimal_mark_of(form, self._file_header, text)
-            files.problems.extend(_format_notes(form.file, text.separator, mark))
+            files.problems.extend(_separator_and_mark_notes(form.file, text.separator, mark))
         files.problems.extend(check_header(form, self._file_header))
         corrections = files.corrections.get(form.file, {})
         self.header = header_with_status(form, self._file_header, corrections)
@@ -215,7 +215,7 @@ def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
         return "."  # what is unreadable is reported where the records are read
 
 
-def _format_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
+def _separator_and_mark_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
     deviations = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
     for value in deviations:
         allowed = Message("commas between cells and decimal points, in the plain form")

@@ -120,7 +120,7 @@ class Divergence:
 
     @property
     def choices(self) -> tuple[Side, ...]:
-        """Sides that can be kept; both if neither contradicts the other."""
+        """Choices for the user: "here", "there", and also "both" if neither contradicts the other."""
         together = self.kind == "begun twice" or (self.kind == "cancelled" and not self.contested)
         return ("here", "there", "both") if together else ("here", "there")
 

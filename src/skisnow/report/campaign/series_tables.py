@@ -87,7 +87,11 @@ def seating_quantiles_table(data: ReportData) -> Table:
     offsets, changes = numbers(data.seating, "depth_offset_mm"), numbers(data.seating, "H_V_change_percent")
     names = {0.0: Message("minimum"), 50.0: Message("median"), 100.0: Message("maximum")}
     rows = [
-        (names.get(percent, f"{percent:g} %"), _quantile(offsets, percent), _quantile(changes, percent))
+        (
+            names.get(percent, f"{percent:g} %"),
+            _percentile_or_none(offsets, percent),
+            _percentile_or_none(changes, percent),
+        )
         for percent in QUANTILES
     ]
     return Table(
@@ -105,7 +109,7 @@ def seating_quantiles_table(data: ReportData) -> Table:
     )
 
 
-def _quantile(values: FloatArray, percent: float) -> float | None:
+def _percentile_or_none(values: FloatArray, percent: float) -> float | None:
     finite = values[np.isfinite(values)]
     return float(np.percentile(finite, percent)) if finite.size else None
 

@@ -129,7 +129,7 @@ _PANELS: Final = (
 def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Force, density and surface area of each used recording, and densities of samples, against the depth."""
     name, samples = "snow_profiles", _samples_by_site(data.campaign.density)
-    profiles = list(_profiles(data.analysis.snow_micro_pen))
+    profiles = list(_recording_profiles(data.analysis.snow_micro_pen))
     if not profiles and not samples:
         return LeftOut(name, Message("Profiles of the snow"), Message("no recording is used"))
     sites = sorted({site for site, _ in profiles} | samples.keys())
@@ -168,8 +168,8 @@ def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | L
     return Drawing(name, caption, alt, figure, wide=len(panels) > 1)
 
 
-def _profiles(pen: SnowMicroPenAnalysis | None) -> Iterator[tuple[str, DepthProfile]]:
-    """Site and profile of the first used recordings."""
+def _recording_profiles(pen: SnowMicroPenAnalysis | None) -> Iterator[tuple[str, DepthProfile]]:
+    """Site and profile of each used recording, up to `MOST_DRAWN` in all."""
     if pen is None:
         return
     used = [index for index, recording in enumerate(pen.evaluated) if recording.is_used]

@@ -142,10 +142,10 @@ def _are_gates_at_same_places(one: list[dict[str, Any]], other: list[dict[str, A
 def _gate_rows(place: Path) -> list[dict[str, Any]]:
     columns = ("gate", "outcome", "time_s", "x_m", "y_m")
     rows = csv_rows(place, columns, action=Message("Simulate the run again with --out."))
-    return [_gate_row(row) for row in rows]
+    return [_parse_gate_row(row) for row in rows]
 
 
-def _gate_row(row: CsvRow) -> dict[str, Any]:
+def _parse_gate_row(row: CsvRow) -> dict[str, Any]:
     if row.cells["outcome"] not in get_args(GateOutcome):
         raise row.refused(
             "outcome", Message("Must be one of {choices}.", choices=get_args(GateOutcome)), code="unknown_choice"

@@ -61,7 +61,7 @@ def add_page(lab: Lab) -> None:
             on_slope = [name for name, placing in placings.items() if placing.is_on_slope]
             if names:
                 _side_by_side_form({name: runs.title(name) for name in names}, on_slope, track)
-            _track_form(is_open=not placings)
+            _add_track_form(is_open=not placings)
             if placings:
                 heading(Message("Measured tracks"), 2)
                 _two_tracks_form(list(placings))
@@ -149,7 +149,7 @@ def _select(key: str, text: str, names: dict[str, str], chosen: str, *, form: st
             ui.element("option").props(properties + (" selected" if name == chosen else ""))
 
 
-def _track_form(*, is_open: bool) -> None:
+def _add_track_form(*, is_open: bool) -> None:
     """Form for a measured track."""
     with folded(Message("Add a measured track"), is_open=is_open):
         sentence(
