@@ -86,12 +86,22 @@ def sync(
 ) -> SyncResult:
     """Transfer missing campaigns and entries between two stores; contradicting entries about a test are not changed.
 
-    here, there: the user's store, where choices are written first; the group's store, on a server or in a file.
-    keep: sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
-    who: author of the choices.
-    progress: called with the number of compared campaigns and their total.
-    Raises StoreError: a store cannot be reached, read or written, both are the same, or a choice names no open
-        conflict. Completed transfers stay; another run continues.
+    Parameters
+    ----------
+    here, there
+        The user's store, where choices are written first; the group's store, on a server or in a file.
+    keep
+        Sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
+    who
+        Author of the choices.
+    progress
+        Called with the number of compared campaigns and their total.
+
+    Raises
+    ------
+    StoreError
+        A store cannot be reached, read or written, both are the same, or a choice names no open conflict. Completed
+        transfers stay; another run continues.
     """
     if here.path == there.path:
         raise StoreError("{path} cannot be synchronised with itself; name the group's store.").tag(
