@@ -112,6 +112,23 @@ def _align_numbers(_app: Sphinx, doctree: Any) -> None:
                     cell["classes"].append("text-right")
 
 
+_ITEM = re.compile(r"([a-z]\w*(?:, [a-z]\w*)*|Returns|Raises \w+): (.+)")
+
+
+def _short_sections(_app: Sphinx, _what: str, _name: str, _obj: object, _options: object, lines: list[str]) -> None:
+    """Show each line such as ``path: the file.`` of a docstring as a term with its text."""
+    shown = []
+    for paragraph in "\n".join(lines).split("\n\n"):
+        items = [(line, None if line.startswith(" ") else _ITEM.fullmatch(line)) for line in paragraph.split("\n")]
+        is_list = items[0][1] and all(match or not line or line.startswith("    ") for line, match in items)
+        shown.append(
+            "\n".join(f"{match[1]}\n    {match[2]}" if match else line for line, match in items)
+            if is_list
+            else paragraph
+        )
+    lines[:] = "\n\n".join(shown).split("\n")
+
+
 def setup(app: Sphinx) -> None:
     """Write tables of keys, schemas and the gallery; register what reads and renders parts of pages."""
     write_tables()
@@ -120,6 +137,7 @@ def setup(app: Sphinx) -> None:
     write_reference()
     write_constants()
     app.connect("autodoc-process-docstring", _bars)
+    app.connect("autodoc-process-docstring", _short_sections)
     app.connect("doctree-read", _align_numbers)
     app.connect("html-page-context", _levels, priority=900)  # behind the theme's own
     app.add_html_math_renderer("mathml", (_visit_inline, None), (_visit_block, None))
