@@ -126,7 +126,9 @@ def _short_sections(_app: Sphinx, _what: str, _name: str, _obj: object, _options
             if is_list
             else paragraph
         )
-    lines[:] = "\n\n".join(shown).split("\n")
+    # several names of one field, which Sphinx would take for a type and a name
+    fields = re.compile(r"^:(?:ivar|param) \w+(?:, \w+)+:", re.MULTILINE)
+    lines[:] = fields.sub(lambda match: match[0].replace(", ", ","), "\n\n".join(shown)).split("\n")
 
 
 def setup(app: Sphinx) -> None:
