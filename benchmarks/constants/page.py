@@ -133,7 +133,7 @@ def _means() -> Iterator[str]:
     yield ""
     yield "Shift of the mean end and its standard error (mm), by `python -m benchmarks.constants --mean KEY`. The"
     yield "table of fixed steps and the moves of all constants but `TABLE_STEP` and those of the first two points above"
-    yield "are of a core whose anchors follow ends of parts alone."
+    yield "are of a core whose anchors follow only the ends of parts."
     yield ""
     yield "| constant | edge of 1°, × ½ and × 2 | skid, × ½ and × 2 |\n| --- | --- | --- |"
     yield from (f"| `{' | '.join(row).replace(' |', '` |', 1)} |" for row in MEANS)

@@ -73,7 +73,7 @@ ANGLES = "{ from = 10, to = 60, n = 3 }"
 
 
 def test_studies_after_a_finished_one(tmp_path: Path, capsys: Printed) -> None:
-    """Errors alone or a slip in what is fixed exit with 1 and keep its table; another one moves the table."""
+    """A study with errors only, or with a wrong fixed value, exits with 1 and keeps the table; another one moves it."""
     path = study_in(tmp_path / "a", SMALL)
     assert main(["study", str(path), "--workers", "1"]) == 0
     finished = (tmp_path / "a/tables/table.csv").read_bytes()
