@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import secrets
-import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from hashlib import sha256
@@ -131,58 +130,6 @@ def entry_sha256(row: Mapping[str, object]) -> str:
     return digest.hexdigest()
 
 
-def entry_sums(row: Mapping[str, object]) -> str:
-    """CRC-32 of each field as JSON, which locates damage in an entry with a wrong SHA-256."""
-    return json.dumps({"entry": _field_sums(row), "cells": _cell_checksums(row)}, ensure_ascii=False)
-
-
-def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str, str | None]]:
-    """Damaged fields: "entry" or "cells", and the column.
-
-    The column is None for "cells" that cannot be parsed and for "sums" that cannot be read.
-    """
-    try:
-        stored_sums = json_value(sums.decode())
-        by_kind = {kind: dict(stored_sums[kind]) for kind in ("entry", "cells")}
-        if not by_kind["entry"].keys() <= row.keys():
-            raise ValueError("a column that no entry has")
-    except (AttributeError, ValueError, TypeError, KeyError):
-        yield "sums", None
-        return
-    try:
-        current_sums = {"entry": _field_sums(row), "cells": _cell_checksums(row)}
-    except ValueError:
-        current_sums = {"entry": _field_sums(row), "cells": by_kind["cells"]}
-        yield "cells", None
-    for kind, sums_of_kind in by_kind.items():
-        names = [*sums_of_kind, *(name for name in current_sums[kind] if name not in sums_of_kind)]
-        yield from ((kind, name) for name in names if current_sums[kind].get(name) != sums_of_kind.get(name))
-
-
-def parse_cells(row: Mapping[str, object]) -> dict[str, str]:
-    """Cells of an entry from the bytes of its row, with replacement of invalid characters.
-
-    Raises ValueError: the cells cannot be parsed.
-    """
-    data = as_bytes(row.get("cells")) or b""
-    cells = json_value(data.decode(errors="replace"))
-    if not isinstance(cells, dict) or not all(isinstance(cell, str) for cell in cells.values()):
-        raise ValueError("the cells are not texts by their columns")
-    return {str(column): str(cell) for column, cell in cells.items()}
-
-
-def _field_sums(row: Mapping[str, object]) -> dict[str, str]:
-    return {name: _crc32(as_bytes(row.get(name))) for name in _SUMMED_COLUMNS}
-
-
-def _cell_checksums(row: Mapping[str, object]) -> dict[str, str]:
-    return {column: _crc32(cell.encode()) for column, cell in parse_cells(row).items()}
-
-
-def _crc32(data: bytes | None) -> str:
-    return "none" if data is None else f"{zlib.crc32(data):08x}"
-
-
 def as_bytes(value: object) -> bytes | None:
     """Bytes of a value, as SQLite casts it to a BLOB."""
     if value is None or isinstance(value, bytes):
@@ -242,4 +189,4 @@ def insert_entries(connection: Connection, journal_id: str, entries: Sequence[Jo
 def _row_of_entry(journal_id: str, entry: JournalEntry) -> dict[str, Any]:
     row = {name: getattr(entry, name) for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     row |= {"journal_id": journal_id, "cells": json.dumps(dict(entry.cells), ensure_ascii=False)}
-    return {**row, "sha256": entry_sha256(row), "sums": entry_sums(row)}
+    return {**row, "sha256": entry_sha256(row)}

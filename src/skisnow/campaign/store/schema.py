@@ -112,7 +112,6 @@ journal_entry = Table(
     Column("why", Text, nullable=False),
     Column("once", Text),
     Column("sha256", String(64)),
-    Column("sums", Text),
     Column("uid", String(31)),
     CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
     CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
@@ -121,5 +120,5 @@ journal_entry = Table(
     Index(None, "uid", unique=True),
 )
 """Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts;
-``once``: what tells an entry that is sent again from a new one; ``sha256``: of all that the entry says; ``sums``: of
-each part of it (`entry_sums`); ``uid``: what the entry is called in every store that has it (`entry_rows`)."""
+``once``: what tells an entry that is sent again from a new one; ``sha256``: of all that the entry says; ``uid``: what
+the entry is called in every store that has it. Older stores have a further column ``sums``, which is not read."""

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from sqlalchemy import Connection, LargeBinary, cast, select
-from sqlalchemy.exc import DatabaseError
+from sqlalchemy.exc import DatabaseError, NoResultFound
 
 from ..._support.errors import StoreError
 from ..._support.user_files import natural_number
 from .engine import is_file, savepoint
 from .folder import Progress, manifest_sha256, unsafe_because
-from .journal_entry import as_bytes, damaged_parts, entry_sha256, parse_cells, readable_entry
+from .journal_entry import as_bytes, entry_sha256, readable_entry
 from .rows import is_sound, stored_campaign
 from .schema import campaign, campaign_file, content, journal_entry
 from .server import broken_references
@@ -110,21 +110,19 @@ class Finding:
         return f"{place or 'database'}: {self.message}"
 
 
-_LONGEST: Final = 60
-_BACKUP: Final = "put a backup in its place"
-_CHECKSUM: Final = "its checksum is damaged, what it says is sound"
-
-
 def find_entry_damage(connection: Connection) -> Iterator[Finding]:
     """Check each entry by its bytes, so that invalid text is found, too."""
     rows = list(_rows_as_bytes(connection))
     places = {row["sequence"]: row["position"] for row in rows}
     for row in rows:
-        about = row if row["about"] is None else {**row, "position": places.get(row["about"])}
-        damage = list(_sum_damage(row))
-        if row["sha256"] is None or not damage:
-            yield from _form_damage(connection, row)
-        yield from (_finding(row, _place(about, column), what) for column, what in damage)
+        position = _utf8(row["position"] if row["about"] is None else places.get(row["about"]))
+        line = natural_number(position)
+        place = f"test {_utf8(row['test'])}, " if row["test"] else ""
+        place += "" if line is None else f"row {line + 1}, "
+        what = _entry_damage(connection, row)
+        if what:
+            message = f"{place}entry {_utf8(row['sequence'])}: {what}; put a backup in its place"
+            yield Finding(_utf8(row["journal_id"]), _utf8(row["file"]) or None, message)
 
 
 def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
@@ -137,65 +135,18 @@ def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
         yield {str(name): as_bytes(value) for name, value in row.items()}
 
 
-def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
-    """Damage of the form of an entry, independent of its checksum."""
+def _entry_damage(connection: Connection, row: _Row) -> str:
+    """Damage of an entry, or ""."""
+    if row["sha256"] is not None and _utf8(row["sha256"]) != entry_sha256(row):
+        return "it is not as it was written down"
     query = select(journal_entry).where(journal_entry.c.sequence == int(_utf8(row["sequence"])))
     try:
-        entry = connection.execute(query).mappings().first()
-        if entry is None:
-            yield _finding(row, _place(row, None), "it is not found by its number")
-        else:
-            readable_entry(entry)
+        readable_entry(connection.execute(query).mappings().one())
     except StoreError as error:
-        yield Finding(_utf8(row["journal_id"]), None, str(error))
-    except (DatabaseError, UnicodeDecodeError):
-        yield _finding(row, _place(row, None), "it contains bytes that are not text")
-
-
-def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:
-    """Damaged columns of an entry (None for the entry itself), with a message."""
-    if row["sha256"] is None or row["sums"] is None:
-        yield None, "it has no checksum"
-        return
-    is_whole = _utf8(row["sha256"]) == entry_sha256(row)
-    parts = list(damaged_parts(row, row["sums"]))
-    if is_whole and ("cells", None) in parts:
-        return  # it was so when it was summed
-    if is_whole == bool(parts):
-        yield None, _CHECKSUM
-        return
-    for kind, name in parts:
-        if kind == "cells" and name is not None:
-            text = parse_cells(row).get(name)
-            yield name, "the cell is gone" if text is None else f"{_shorten_text(text)} is not what was written down"
-        elif kind == "cells":
-            yield None, "its cells cannot be read"
-        elif kind == "sums":
-            yield None, "neither what it says nor its checksums are as they were written down"
-        else:
-            yield None, f"its {name} is not what was written down; {_shorten_text(_utf8(row[name or '']))} stands there"
-
-
-def _place(row: _Row, column: str | None) -> str:
-    """Test, row and column in words. The cells of a stored campaign already contain their line."""
-    test, position, line = _utf8(row["test"]), row["position"], ""
-    if position is not None:
-        before = natural_number(_utf8(position))
-        line = "" if before is None else str(before + 1)
-    elif column is not None and "/" in column:
-        line, _, column = column.partition("/")
-    named = (("test ", test), ("row ", line), ("column ", column))
-    return ", ".join(word + text for word, text in named if text)
-
-
-def _finding(row: _Row, place: str, what: str) -> Finding:
-    number = _utf8(row["sequence"])
-    where = f"{place}: " if place else ""
-    return Finding(_utf8(row["journal_id"]), _utf8(row["file"]) or None, f"{where}{what} (entry {number}); {_BACKUP}")
-
-
-def _shorten_text(text: str) -> str:
-    return repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…")
+        return str(error)
+    except (DatabaseError, NoResultFound, UnicodeDecodeError):
+        return "it cannot be read"
+    return "" if row["sha256"] is not None else "it has no checksum"
 
 
 def _utf8(data: bytes | None) -> str:
