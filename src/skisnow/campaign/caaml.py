@@ -51,16 +51,9 @@ _UNIT_OF_PROFILE: Final = {"snowTemp": "uomTemp"}
 def read_caaml(path: str | Path) -> SnowPit:
     """Read a snow profile in CAAML 5.0 or 6.0 to 6.0.6.
 
-    Returns
-    -------
-    SnowPit
-        Snow pit with depths from the surface down.
-
-    Raises
-    ------
-    FieldDataError
-        The file cannot be read, is not CAAML 5 or 6, declares entities, gives heights from the ground without the
-        snow height, or has an invalid number or unit.
+    Returns: snow pit with depths from the surface down.
+    Raises FieldDataError: the file cannot be read, is not CAAML 5 or 6, declares entities, gives heights from the
+        ground without the snow height, or has an invalid number or unit.
     """
     path = Path(path)
     try:

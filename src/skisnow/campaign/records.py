@@ -28,14 +28,9 @@ Key = TypeVar("Key", bound="Hashable")
 class PenetrationSeries(Shown):
     """One penetration experiment: a tool at one edge angle under rising loads.
 
-    Attributes
-    ----------
-    experiment, site, tool
-        Names as written in the file.
-    edge_angle
-        ϑ in rad.
-    load, penetration_depth
-        F in N and e in m, one per load step in the order of loading.
+    experiment, site, tool: names as written in the file.
+    edge_angle: ϑ in rad.
+    load, penetration_depth: F in N and e in m, one per load step in the order of loading.
     """
 
     experiment: str
@@ -69,14 +64,9 @@ class _Readings(Shown):
 class UnloadingReadings(_Readings):
     """Readings during unloading, series after series, each in the order of reading.
 
-    Attributes
-    ----------
-    first
-        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
-    load, penetration_depth
-        Remaining load F (N) and depth e (m), one per reading.
-    row
-        Line of the file of each reading.
+    first: m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    load, penetration_depth: remaining load F (N) and depth e (m), one per reading.
+    row: line of the file of each reading.
     """
 
     first: IntArray
@@ -98,28 +88,17 @@ class UnloadingReadings(_Readings):
 class PenetrationTests(_Readings):
     """All m penetration experiments of a campaign, n readings under rising loads in the order of the file.
 
-    Attributes
-    ----------
-    experiment, site, tool, spot
-        Names, one per experiment; an absent spot is ``""``.
-    edge_angle
-        ϑ in rad, one per experiment.
-    snow_density, drop_cone_depth
-        Density ρ (kg/m³) and drop-cone depth H_p (m) of the experiment, the mean of its rows; NaN if missing.
-    cancelled
-        Reason for cancelling the experiment, or ``""``.
-    first
-        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i.
-    load, penetration_depth
-        F in N and e in m, one per reading.
-    row
-        Line of the file of each reading; the header is line 1.
-    further
-        Other columns of the file as text, one cell per reading; they are not interpreted.
-    unloading
-        Readings during unloading, which are not used for hardness (optional).
-    depth_after
-        e (m) read again under the same load after waiting, one per reading; NaN if missing (optional).
+    experiment, site, tool, spot: names, one per experiment; an absent spot is ``""``.
+    edge_angle: ϑ in rad, one per experiment.
+    snow_density, drop_cone_depth: density ρ (kg/m³) and drop-cone depth H_p (m) of the experiment, the mean of its
+        rows; NaN if missing.
+    cancelled: reason for cancelling the experiment, or ``""``.
+    first: m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i.
+    load, penetration_depth: F in N and e in m, one per reading.
+    row: line of the file of each reading; the header is line 1.
+    further: other columns of the file as text, one cell per reading; they are not interpreted.
+    unloading: readings during unloading, which are not used for hardness (optional).
+    depth_after: e (m) read again under the same load after waiting, one per reading; NaN if missing (optional).
     """
 
     experiment: tuple[str, ...]
@@ -169,12 +148,8 @@ class PenetrationTests(_Readings):
 class TurningReadings(_Readings):
     """Moments over turning angles of the shear experiments, test after test, each in the order of reading.
 
-    Attributes
-    ----------
-    first
-        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
-    turning_angle, moment
-        φ (rad) from any zero, and M (N m), one per reading.
+    first: m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    turning_angle, moment: φ (rad) from any zero, and M (N m), one per reading.
     """
 
     first: IntArray
@@ -190,18 +165,11 @@ class TurningReadings(_Readings):
 class ShearTests(Shown):
     """All shear experiments of a campaign; an experiment with several rows has the values of its largest moment.
 
-    Attributes
-    ----------
-    experiment, site, plate, spot, cancelled, further
-        As in `PenetrationTests`.
-    edge_angle, penetration_depth, lever_arm, moment
-        ϑ (rad), e (m), r (m), M (N m).
-    snow_density, drop_cone_depth
-        ρ (kg/m³) and H_p (m) of the experiment; NaN if missing.
-    row
-        Line of the file.
-    turning
-        Moments over turning angles (optional).
+    experiment, site, plate, spot, cancelled, further: as in `PenetrationTests`.
+    edge_angle, penetration_depth, lever_arm, moment: ϑ (rad), e (m), r (m), M (N m).
+    snow_density, drop_cone_depth: ρ (kg/m³) and H_p (m) of the experiment; NaN if missing.
+    row: line of the file.
+    turning: moments over turning angles (optional).
     """
 
     experiment: tuple[str, ...]
@@ -306,40 +274,22 @@ def _means_by_key(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[s
 class Campaign(Shown):
     """A valid campaign with its corrections applied.
 
-    Attributes
-    ----------
-    name, place, observers
-        From campaign.toml; the default name is that of the folder.
-    folder
-        Folder from which it was read.
-    gauge_resolution
-        Step of the depth gauge (m), or None if not stated.
-    load_uncertainty, moment_uncertainty, lever_arm_uncertainty
-        Standard uncertainties (N, N m, m); None counts as 0.
-    seating
-        Standard deviation of the depth zero from series to series (m); None where not stated.
-    load_steps
-        Loads of the campaign's discs (N), for entry; can be empty.
-    tools, plates
-        Tools by name; plate lengths L (m) by name.
-    excluding
-        Codes of the quality flags that keep an experiment out of the estimates.
-    penetration, shear, density, drop_cone, snow_micro_pen
-        The tables; None without such a file.
-    problems
-        Warnings from reading the files.
-    file_hashes
-        SHA-256 of each file that was read, by name.
-    corrections
-        Applied corrections, in the order of corrections.csv.
-    unread_files
-        Names of files in the folder that are not part of a campaign.
-    pole_stiffness
-        Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
-    weather
-        Readings of a weather station (optional).
-    places
-        Workbook and sheet of tables that are sheets of a workbook, by the name of the file.
+    name, place, observers: from campaign.toml; the default name is that of the folder.
+    folder: folder from which it was read.
+    gauge_resolution: step of the depth gauge (m), or None if not stated.
+    load_uncertainty, moment_uncertainty, lever_arm_uncertainty: standard uncertainties (N, N m, m); None counts as 0.
+    seating: standard deviation of the depth zero from series to series (m); None where not stated.
+    load_steps: loads of the campaign's discs (N), for entry; can be empty.
+    tools, plates: tools by name; plate lengths L (m) by name.
+    excluding: codes of the quality flags that keep an experiment out of the estimates.
+    penetration, shear, density, drop_cone, snow_micro_pen: the tables; None without such a file.
+    problems: warnings from reading the files.
+    file_hashes: SHA-256 of each file that was read, by name.
+    corrections: applied corrections, in the order of corrections.csv.
+    unread_files: names of files in the folder that are not part of a campaign.
+    pole_stiffness: moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
+    weather: readings of a weather station (optional).
+    places: workbook and sheet of tables that are sheets of a workbook, by the name of the file.
 
     See Also
     --------

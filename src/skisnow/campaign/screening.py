@@ -44,16 +44,9 @@ _ROUNDING: Final = 1e-9  # relative; limits and readings come from decimal milli
 def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended") -> dict[str, BoolArray]:
     """Flag the penetration series.
 
-    Parameters
-    ----------
-    campaign
-        The campaign; without penetration tests the masks are empty.
-    geometry
-        Form of the ski piece, ``"extended"`` or ``"paper"``; it decides on ``beyond_tool``.
-
-    Returns
-    -------
-    For each code but those of `NEED_HARDNESS`, in the order of `QUALITY_FLAGS`, a mask over the experiments.
+    campaign: the campaign; without penetration tests the masks are empty.
+    geometry: form of the ski piece, ``"extended"`` or ``"paper"``; it decides on ``beyond_tool``.
+    Returns: for each code but those of `NEED_HARDNESS`, in the order of `QUALITY_FLAGS`, a mask over the experiments.
     """
     tests = campaign.penetration
     if tests is None:
@@ -184,18 +177,11 @@ def flag_problems(
 ) -> list[Problem]:
     """List every quality flag as a problem of severity ``flag``.
 
-    Parameters
-    ----------
-    campaign
-        The campaign that was screened.
-    masks_penetration, masks_shear
-        Masks by code over the experiments, from screening or with further codes of `QUALITY_FLAGS`.
-    geometry
-        Form of the ski piece in the screening.
-
-    Returns
-    -------
-    Problems of penetration before shear, in the order of the file, then of `QUALITY_FLAGS`.
+    campaign: the campaign that was screened.
+    masks_penetration, masks_shear: masks by code over the experiments, from screening or with further codes of
+        `QUALITY_FLAGS`.
+    geometry: form of the ski piece in the screening.
+    Returns: problems of penetration before shear, in the order of the file, then of `QUALITY_FLAGS`.
     """
     problems: list[Problem] = []
     if campaign.penetration is not None:

@@ -69,44 +69,26 @@ _UNCHANGED: Final = (
 class SnowMicroPenProfile:
     """A recording: force against depth, and the header.
 
-    Attributes
-    ----------
-    file, name, comment
-        Name of the file; name of the recording and comment in its header.
-    depth
-        Distance of the tip from its start in the air above the snow, at each sample (m). The file has neither the
+    file, name, comment: name of the file; name of the recording and comment in its header.
+    depth: distance of the tip from its start in the air above the snow, at each sample (m). The file has neither the
         position of the surface nor the reason for the end of the recording.
-    force
-        Force on the tip (N): counts times `force_per_count`, without an offset.
-    sample_distance
-        Distance from sample to sample (m).
-    force_per_count
-        N per count of the analogue-digital converter.
-    force_offset
-        From the header; according to the makers unused, 0 in practice.
-    announced_samples
-        A second, larger sample count in the header. The recording has ``len(force)`` samples; the rest of the file is
-        padding.
-    clock
-        Time by the instrument's clock, UTC; None if it is not a date. It can be wrong by years, see
+    force: force on the tip (N): counts times `force_per_count`, without an offset.
+    sample_distance: distance from sample to sample (m).
+    force_per_count: N per count of the analogue-digital converter.
+    force_offset: from the header; according to the makers unused, 0 in practice.
+    announced_samples: a second, larger sample count in the header. The recording has ``len(force)`` samples; the rest
+        of the file is padding.
+    clock: time by the instrument's clock, UTC; None if it is not a date. It can be wrong by years, see
         `date_in_file_name`.
-    date_in_file_name
-        Date from the first eight digits in the file's name that are a date (20200208), or None.
-    latitude_deg, longitude_deg
-        WGS 84, north and east positive: the header has magnitudes and the flags N or S, E or W. None where flags or
-        numbers are not valid, or both are 0.
-    height
-        Height above sea level (m), or None.
-    dilution_of_precision, satellites, fix_mode
-        Values of the satellite receiver, from the header.
-    speed
-        Speed of the tip (m/s).
-    tip_diameter, instrument_length
-        In m.
-    overload_N
-        Force at which the instrument stops.
-    firmware, instrument_serial, sensor_serial, amplifier_serial
-        As in the header.
+    date_in_file_name: date from the first eight digits in the file's name that are a date (20200208), or None.
+    latitude_deg, longitude_deg: WGS 84, north and east positive: the header has magnitudes and the flags N or S, E or
+        W. None where flags or numbers are not valid, or both are 0.
+    height: height above sea level (m), or None.
+    dilution_of_precision, satellites, fix_mode: values of the satellite receiver, from the header.
+    speed: speed of the tip (m/s).
+    tip_diameter, instrument_length: in m.
+    overload_N: force at which the instrument stops.
+    firmware, instrument_serial, sensor_serial, amplifier_serial: as in the header.
     """
 
     file: str

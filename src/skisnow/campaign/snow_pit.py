@@ -123,22 +123,13 @@ _NO_NOTE: Final = "-9999"
 class DensityLayers:
     """Density samples of snow pits, in the order of the file.
 
-    Attributes
-    ----------
-    pit
-        Name of the pit.
-    top, bottom
-        Limits of the layer, heights above the ground or ice below the snow (m); top > bottom.
-    snow_density
-        ρ in kg/m³.
-    note
-        The column NOTES, or ``""``.
-    kind
-        Kind of snow in the file, or ``""``.
-    row
-        Line of the file; the header is line 1.
-    problems
-        Warnings of reading, such as unknown columns.
+    pit: name of the pit.
+    top, bottom: limits of the layer, heights above the ground or ice below the snow (m); top > bottom.
+    snow_density: ρ in kg/m³.
+    note: the column NOTES, or ``""``.
+    kind: kind of snow in the file, or ``""``.
+    row: line of the file; the header is line 1.
+    problems: warnings of reading, such as unknown columns.
     """
 
     pit: tuple[str, ...]

@@ -37,20 +37,12 @@ _TIME: Final = re.compile(r"\d{4}-\d\d-\d\d(T\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\
 def write_caaml(pit: SnowPit, path: str | Path) -> Path:
     """Write a snow pit as CAAML 6.0.3.
 
-    Returns
-    -------
-    The file.
+    Returns: the file.
+    Raises ParameterError: the pit has no time, which CAAML demands, a snow temperature above 0 °C, or a code that CAAML
+        does not have.
+    Raises OutputError: the file cannot be written.
 
-    Raises
-    ------
-    ParameterError
-        The pit has no time, which CAAML demands, a snow temperature above 0 °C, or a code that CAAML does not have.
-    OutputError
-        The file cannot be written.
-
-    References
-    ----------
-    The page docs/files/campaign.md.
+    See the page docs/files/campaign.md.
     """
     write_file(path, caaml_text(pit))
     return Path(path)

@@ -147,19 +147,11 @@ class ConvertOptions:
 def convert(source: str | Path, target: str | Path, options: ConvertOptions | None = None) -> tuple[Path, ...]:
     """Read one file or campaign and write another; the kinds follow from the endings.
 
-    Returns
-    -------
-    The files that were written.
-
-    Raises
-    ------
-    ParameterError
-        The conversion is unknown (the message lists the known ones), or the target's format requires data that the
-        source does not contain.
-    FieldDataError
-        The source cannot be read.
-    OutputError
-        The target is the source, or cannot be written.
+    Returns: the files that were written.
+    Raises ParameterError: the conversion is unknown (the message lists the known ones), or the target's format requires
+        data that the source does not contain.
+    Raises FieldDataError: the source cannot be read.
+    Raises OutputError: the target is the source, or cannot be written.
     """
     source, target = Path(source), Path(target)
     kinds = _kind_of_file(source), _kind_of_file(target)

@@ -37,23 +37,12 @@ FORCE: Final = ("Depth (mm)", "Force (N)")
 def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     """Write the tables of a pit: ``NAME_density.csv``, ``NAME_temperature.csv`` and ``NAME_stratigraphy.csv``.
 
-    Parameters
-    ----------
-    pit
-        With the height of the snow: SnowEx counts from the ground.
-    path
-        ``NAME.csv``; tables without a row are not written.
-
-    Returns
-    -------
-    The files.
-
-    Raises
-    ------
-    ParameterError
-        The height of the snow is not known or less than the depth of a layer, or the pit has no table.
-    OutputError
-        A file cannot be written.
+    pit: with the height of the snow: SnowEx counts from the ground.
+    path: ``NAME.csv``; tables without a row are not written.
+    Returns: the files.
+    Raises ParameterError: the height of the snow is not known or less than the depth of a layer, or the pit has no
+        table.
+    Raises OutputError: a file cannot be written.
     """
     path = Path(path)
     height = pit.snow_height

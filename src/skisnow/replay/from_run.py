@@ -76,22 +76,12 @@ def replay_of_run(
 ) -> Replay:
     """The replay of a run.
 
-    Parameters
-    ----------
-    run
-        Result of `skisnow.simulate`.
-    title
-        Title for the reader.
-    track
-        Measured track in the run's axes.
-    gates
-        X and y of the gates' poles (m), shape (g, 2), alternately red and blue (default: the turning poles of the run's
-        course).
-
-    Raises
-    ------
-    ParameterError
-        The run has no moment, or the gates are not pairs of finite numbers.
+    run: result of `skisnow.simulate`.
+    title: title for the reader.
+    track: measured track in the run's axes.
+    gates: X and y of the gates' poles (m), shape (g, 2), alternately red and blue (default: the turning poles of the
+        run's course).
+    Raises ParameterError: the run has no moment, or the gates are not pairs of finite numbers.
     """
     setting = _fixed_parts_of_run(run)
     replay = assemble_replay(_arrays(run), setting, title=title, track=track)

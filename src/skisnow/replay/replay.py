@@ -158,37 +158,22 @@ def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
 class Replay:
     """A run as arrays in SI units and radians.
 
-    Attributes
-    ----------
-    title, facts
-        Title, and lines of name and value for the reader.
-    tilt
-        Angle of the shown plane's x axis below the horizontal (rad): the inclination of a plane; 0 on a profile and a
+    title, facts: title, and lines of name and value for the reader.
+    tilt: angle of the shown plane's x axis below the horizontal (rad): the inclination of a plane; 0 on a profile and a
         terrain, whose axes are horizontal and vertical.
-    centre_of_mass_height
-        Height of the centre of mass above the bases (m).
-    time
-        Times (s), shape (n,).
-    place, attitude
-        Place of the middle between the boots (m), (n, 3); unit quaternion w, x, y, z from sledge to space, (n, 4).
-    speed, curvature, heading
-        Speed (m/s), 1/turn radius (1/m), heading from the fall line (rad), positive left, (n,).
-    depth
-        Depth of the loaded edge under the boot below the undisturbed surface (m), (n, 2).
-    skis, groove
-        Shape and load of the skis, and their groove.
-    profile
-        Distance and height of a measured slope (m), shape (p, 2).
-    track
-        Measured track.
-    gates
-        Feet of the gates' poles on the snow (m), (g, 3), in the order of the course.
-    gate_times
-        Time from the start of the run to each gate (s), (g,); NaN for a gate that was not crossed.
-    terrain
-        Measured heights over the place; without terrain and profile the slope is the plane z = 0.
-    skier
-        Skier of the run.
+    centre_of_mass_height: height of the centre of mass above the bases (m).
+    time: times (s), shape (n,).
+    place, attitude: place of the middle between the boots (m), (n, 3); unit quaternion w, x, y, z from sledge to space,
+        (n, 4).
+    speed, curvature, heading: speed (m/s), 1/turn radius (1/m), heading from the fall line (rad), positive left, (n,).
+    depth: depth of the loaded edge under the boot below the undisturbed surface (m), (n, 2).
+    skis, groove: shape and load of the skis, and their groove.
+    profile: distance and height of a measured slope (m), shape (p, 2).
+    track: measured track.
+    gates: feet of the gates' poles on the snow (m), (g, 3), in the order of the course.
+    gate_times: time from the start of the run to each gate (s), (g,); NaN for a gate that was not crossed.
+    terrain: measured heights over the place; without terrain and profile the slope is the plane z = 0.
+    skier: skier of the run.
     """
 
     title: str

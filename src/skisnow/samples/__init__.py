@@ -212,21 +212,10 @@ LAST: Final = "README.txt"
 def write_samples(folder: str | Path, *, seed: int = 1) -> list[Path]:
     """Write synthetic sample files: a campaign, tracks, gates, photo-cell times, pits, studies.
 
-    Parameters
-    ----------
-    folder
-        New or empty folder.
-    seed
-        Seed of the random numbers, 0 or more.
-
-    Returns
-    -------
-    The files, sorted by path.
-
-    Raises
-    ------
-    OutputError
-        The folder is not empty or cannot be written.
+    folder: new or empty folder.
+    seed: seed of the random numbers, 0 or more.
+    Returns: the files, sorted by path.
+    Raises OutputError: the folder is not empty or cannot be written.
 
     Notes
     -----

@@ -25,26 +25,16 @@ DEFAULT_NOISE: Final = ReferenceNoise()
 class ReferenceCampaign:
     """A synthetic campaign and its true values.
 
-    Attributes
-    ----------
-    seed, noise
-        Seed and errors of the random draws.
-    penetration, shear, density, drop_cone
-        Tables as read from the written files.
-    snow_hardness
-        True H_V (N/m³), one per penetration series: F₇/V₇ at the nominal largest load and the true depth there.
-    seating_offset
-        Offset of the gauge in each series (m), positive if it reads too much.
-    layering
-        κ of each series.
-    penetration_depth
-        True depth of each penetration reading under its true load (m).
-    unloading_ratio
-        True k_u/H_V of each series with unloading, NaN for the others.
-    failure_shear_stress
-        True S_f (N/m²), one per shear test.
-    shear_displacement
-        True u_y (m), one per shear test; NaN without turning angles.
+    seed, noise: seed and errors of the random draws.
+    penetration, shear, density, drop_cone: tables as read from the written files.
+    snow_hardness: True H_V (N/m³), one per penetration series: F₇/V₇ at the nominal largest load and the true depth
+        there.
+    seating_offset: offset of the gauge in each series (m), positive if it reads too much.
+    layering: κ of each series.
+    penetration_depth: True depth of each penetration reading under its true load (m).
+    unloading_ratio: True k_u/H_V of each series with unloading, NaN for the others.
+    failure_shear_stress: True S_f (N/m²), one per shear test.
+    shear_displacement: True u_y (m), one per shear test; NaN without turning angles.
     """
 
     seed: int
@@ -100,26 +90,12 @@ def reference_campaign(
 ) -> ReferenceCampaign:
     """Draw a synthetic campaign of the paper's design: 236 penetration series of seven loads, 108 shear tests.
 
-    Parameters
-    ----------
-    seed
-        Seed of `numpy.random.default_rng`, the only source of randomness; an integer of at least 0.
-    noise
-        Errors (default: those of the reference campaign).
-    turning_angles
-        True for shear tests with turning angles; all other values stay the same.
-    creep
-        True for depths read again after waiting at a site with creeping snow; all other values stay the same.
-
-    Returns
-    -------
-    ReferenceCampaign
-        Bit for bit the same for the same seed and noise.
-
-    Raises
-    ------
-    ParameterError
-        The seed is not an integer of at least 0.
+    seed: seed of `numpy.random.default_rng`, the only source of randomness; an integer of at least 0.
+    noise: errors (default: those of the reference campaign).
+    turning_angles: True for shear tests with turning angles; all other values stay the same.
+    creep: True for depths read again after waiting at a site with creeping snow; all other values stay the same.
+    Returns: bit for bit the same for the same seed and noise.
+    Raises ParameterError: the seed is not an integer of at least 0.
 
     Notes
     -----

@@ -134,40 +134,23 @@ class ReferenceNoise:
     Most are standard deviations of independent normal draws; each is 0 to switch it off, which leaves the draws of all
     others as they are.
 
-    Attributes
-    ----------
-    gauge_resolution
-        Step to which depths are rounded (m).
-    load_sd
-        Error of each true load against the nominal one in the file (N).
-    seating_sd
-        Offset of the depth zero (m), one per series, positive if the gauge reads too much.
-    depth_scatter
-        Relative scatter of depth from reading to reading.
-    depths_grow
-        True if the scatter of a series is drawn again when its depth would shrink under a larger load.
-    hardness_log_sd
-        Spread of ln H_V between the spots of one site.
-    layering_mean
-        Mean of the layering exponent κ, see `reference_campaign`; at most 0.4 in size.
-    layering_sd
-        Spread of 2 ln(1 + κ/2) over the series, which is that of κ where it is small.
-    shear_scatter
-        Multiplies the scatter of S_f between spots (0.03 N/mm² hard, 0.006 soft, 0.059 about Eqn 14).
-    moment_sd
-        Error of the moment (N m).
-    lever_arm_sd
-        True lever arm less the stated one (m).
-    unloading_log_sd
-        Spread of ln(k_u/H_V) between the spots of one site.
-    rebound_scatter
-        Relative scatter of the rebound from reading to reading, while discs are taken off.
-    displacement_log_sd
-        Spread of ln u_y between shear tests with turning angles.
-    turning_sd
-        Error of each turning angle (rad): 0.01 mm on a dial gauge at the plate.
-    creep_mean
-        Mean of the exponential distribution of the relative growth of a depth under a constant load where snow creeps.
+    gauge_resolution: step to which depths are rounded (m).
+    load_sd: error of each true load against the nominal one in the file (N).
+    seating_sd: offset of the depth zero (m), one per series, positive if the gauge reads too much.
+    depth_scatter: relative scatter of depth from reading to reading.
+    depths_grow: True if the scatter of a series is drawn again when its depth would shrink under a larger load.
+    hardness_log_sd: spread of ln H_V between the spots of one site.
+    layering_mean: mean of the layering exponent κ, see `reference_campaign`; at most 0.4 in size.
+    layering_sd: spread of 2 ln(1 + κ/2) over the series, which is that of κ where it is small.
+    shear_scatter: multiplies the scatter of S_f between spots (0.03 N/mm² hard, 0.006 soft, 0.059 about Eqn 14).
+    moment_sd: error of the moment (N m).
+    lever_arm_sd: True lever arm less the stated one (m).
+    unloading_log_sd: spread of ln(k_u/H_V) between the spots of one site.
+    rebound_scatter: relative scatter of the rebound from reading to reading, while discs are taken off.
+    displacement_log_sd: spread of ln u_y between shear tests with turning angles.
+    turning_sd: error of each turning angle (rad): 0.01 mm on a dial gauge at the plate.
+    creep_mean: mean of the exponential distribution of the relative growth of a depth under a constant load where snow
+        creeps.
     """
 
     gauge_resolution: float = 0.01 * MM

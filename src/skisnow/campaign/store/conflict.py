@@ -34,20 +34,12 @@ _KINDS: Final[dict[Kind, str]] = {
 class Conflict:
     """A conflict: contradicting entries of two stores about one test, which are not transferred.
 
-    Attributes
-    ----------
-    id
-        Identifier of the conflict for a choice; it changes if one side changes.
-    campaign, name
-        Id and name of the campaign.
-    file, test
-        Table and test of the entries; for a description ``campaign.toml`` and ``""``.
-    what
-        Kind of conflict in words.
-    here, there
-        Entries that only one store has, one line each, oldest first.
-    choices
-        Sides that can be kept.
+    id: identifier of the conflict for a choice; it changes if one side changes.
+    campaign, name: id and name of the campaign.
+    file, test: table and test of the entries; for a description ``campaign.toml`` and ``""``.
+    what: kind of conflict in words.
+    here, there: entries that only one store has, one line each, oldest first.
+    choices: sides that can be kept.
     """
 
     id: str

@@ -40,16 +40,10 @@ class OvertakenError(StoreError):
 class JournalHead:
     """Summary of a campaign in entry.
 
-    Attributes
-    ----------
-    id
-        12 hexadecimal digits.
-    name
-        Name from its description; "" if missing or damaged.
-    begun_at, last_at
-        Times of the begin and of the last entry (UTC, ISO 8601).
-    n_entries
-        Number of its entries.
+    id: 12 hexadecimal digits.
+    name: name from its description; "" if missing or damaged.
+    begun_at, last_at: times of the begin and of the last entry (UTC, ISO 8601).
+    n_entries: number of its entries.
     """
 
     id: str

@@ -29,22 +29,13 @@ SHARED_FIELDS: Final = ("action", "file", "test", "position", "about", "who", "w
 class NewEntry:
     """A new entry to be written.
 
-    Attributes
-    ----------
-    action
-        describe (all of campaign.toml), add (a row), correct (one cell of a row), cancel (a test), undo.
-    file, test
-        The table's file and the test's name; ``""`` for a description.
-    cells
-        Texts by column.
-    position
-        Number of an added row within its test; it defines the order of the rows.
-    about
-        Sequence of the entry that is corrected or undone.
-    who, why
-        As in corrections.csv; for a cancellation its reason.
-    once
-        Unique text of this entry from the writer; an entry that is sent again is not written twice.
+    action: describe (all of campaign.toml), add (a row), correct (one cell of a row), cancel (a test), undo.
+    file, test: the table's file and the test's name; ``""`` for a description.
+    cells: texts by column.
+    position: number of an added row within its test; it defines the order of the rows.
+    about: sequence of the entry that is corrected or undone.
+    who, why: as in corrections.csv; for a cancellation its reason.
+    once: unique text of this entry from the writer; an entry that is sent again is not written twice.
     """
 
     action: Action
@@ -62,14 +53,9 @@ class NewEntry:
 class JournalEntry(NewEntry):
     """A written entry.
 
-    Attributes
-    ----------
-    sequence
-        Rising number in this store.
-    at
-        Time in UTC (ISO 8601).
-    uid
-        Identifier in all stores. Entries sorted by it have the same order everywhere, and none precedes an entry that
+    sequence: rising number in this store.
+    at: time in UTC (ISO 8601).
+    uid: identifier in all stores. Entries sorted by it have the same order everywhere, and none precedes an entry that
         its writer knew.
     """
 

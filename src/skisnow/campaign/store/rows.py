@@ -28,18 +28,11 @@ TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
 class StoredCampaign:
     """A campaign in the store.
 
-    Attributes
-    ----------
-    id, sha256
-        SHA-256 of the manifest and its first 12 hexadecimal digits.
-    name
-        Name from campaign.toml or of the folder when it was first added.
-    added_at
-        Time in UTC.
-    n_errors, n_warnings
-        Numbers of problems of the campaign; None if the check failed.
-    files
-        Files sorted by path.
+    id, sha256: SHA-256 of the manifest and its first 12 hexadecimal digits.
+    name: name from campaign.toml or of the folder when it was first added.
+    added_at: time in UTC.
+    n_errors, n_warnings: numbers of problems of the campaign; None if the check failed.
+    files: files sorted by path.
     """
 
     id: str

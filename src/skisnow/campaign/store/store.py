@@ -57,14 +57,9 @@ __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", 
 class AddedCampaign(StoredCampaign):
     """Result of `Store.add`.
 
-    Attributes
-    ----------
-    already_stored
-        True if the same files were stored before; nothing was added.
-    n_repaired
-        Number of damaged files that were repaired.
-    check_failure
-        Reason why the check of the campaign failed, or None.
+    already_stored: True if the same files were stored before; nothing was added.
+    n_repaired: number of damaged files that were repaired.
+    check_failure: reason why the check of the campaign failed, or None.
     """
 
     already_stored: bool

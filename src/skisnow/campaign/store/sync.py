@@ -50,20 +50,12 @@ ALL: Final = "all"
 class SyncResult:
     """Result of a synchronisation.
 
-    Attributes
-    ----------
-    n_campaigns_given, n_campaigns_taken
-        Number of stored campaigns that were sent, and received.
-    n_entries_given, n_entries_taken
-        Number of journal entries that were sent, and received.
-    n_settled
-        Number of conflicts that were settled by choices.
-    conflicts
-        Open conflicts.
-    same_names
-        Sentences on campaigns from both stores with the same name, which are kept separate.
-    problems
-        Sentences on damaged campaigns and journals, which were not transferred.
+    n_campaigns_given, n_campaigns_taken: number of stored campaigns that were sent, and received.
+    n_entries_given, n_entries_taken: number of journal entries that were sent, and received.
+    n_settled: number of conflicts that were settled by choices.
+    conflicts: open conflicts.
+    same_names: sentences on campaigns from both stores with the same name, which are kept separate.
+    problems: sentences on damaged campaigns and journals, which were not transferred.
     """
 
     n_campaigns_given: int
@@ -86,22 +78,12 @@ def sync(
 ) -> SyncResult:
     """Transfer missing campaigns and entries between two stores; contradicting entries about a test are not changed.
 
-    Parameters
-    ----------
-    here, there
-        The user's store, where choices are written first; the group's store, on a server or in a file.
-    keep
-        Sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
-    who
-        Author of the choices.
-    progress
-        Called with the number of compared campaigns and their total.
-
-    Raises
-    ------
-    StoreError
-        A store cannot be reached, read or written, both are the same, or a choice names no open conflict. Completed
-        transfers stay; another run continues.
+    here, there: the user's store, where choices are written first; the group's store, on a server or in a file.
+    keep: sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
+    who: author of the choices.
+    progress: called with the number of compared campaigns and their total.
+    Raises StoreError: a store cannot be reached, read or written, both are the same, or a choice names no open
+        conflict. Completed transfers stay; another run continues.
     """
     if here.path == there.path:
         raise StoreError("{path} cannot be synchronised with itself; name the group's store.").tag(

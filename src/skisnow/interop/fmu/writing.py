@@ -31,32 +31,15 @@ _DATE: Final = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip knows: the same 
 def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2, skis: int = 2) -> Path:
     """Write an FMU of rigid skis in the snow of a scenario: pose and motion in, force and moment out.
 
-    Parameters
-    ----------
-    scenario
-        Its ski, snow, laws and slope; its sledge defines the start of the skis.
-    path
-        Path that ends in .fmu.
-    fmi
-        Version of the standard, 2 (2.0) or 3 (3.0).
-    skis
-        1, or 2: the left and the right one.
+    scenario: its ski, snow, laws and slope; its sledge defines the start of the skis.
+    path: path that ends in .fmu.
+    fmi: version of the standard, 2 (2.0) or 3 (3.0).
+    skis: 1, or 2: the left and the right one.
+    Returns: path of the file.
+    Raises ParameterError: the path does not end in .fmu, this machine has no library, or the number is not allowed.
+    Raises OutputError: the file cannot be written.
 
-    Returns
-    -------
-    Path
-        Path of the file.
-
-    Raises
-    ------
-    ParameterError
-        The path does not end in .fmu, this machine has no library, or the number is not allowed.
-    OutputError
-        The file cannot be written.
-
-    References
-    ----------
-    * The page docs/how-to/other-programs.md.
+    See the page docs/how-to/other-programs.md.
     """
     _require(path, fmi)
     if skis not in (1, 2):
@@ -69,30 +52,14 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
 
     With a skier the poses of its boots at the end of each step go in, too: the importing program controls them.
 
-    Parameters
-    ----------
-    scenario
-        Scenario without boots.file.
-    path
-        Path that ends in .fmu.
-    fmi
-        Version of the standard, 2 (2.0) or 3 (3.0).
+    scenario: scenario without boots.file.
+    path: path that ends in .fmu.
+    fmi: version of the standard, 2 (2.0) or 3 (3.0).
+    Returns: path of the file.
+    Raises ParameterError: the path does not end in .fmu, this machine has no library, or a file moves the boots.
+    Raises OutputError: the file cannot be written.
 
-    Returns
-    -------
-    Path
-        Path of the file.
-
-    Raises
-    ------
-    ParameterError
-        The path does not end in .fmu, this machine has no library, or a file moves the boots.
-    OutputError
-        The file cannot be written.
-
-    References
-    ----------
-    * The page docs/how-to/other-programs.md.
+    See the page docs/how-to/other-programs.md.
     """
     _require(path, fmi)
     return _write_fmu(sledge_model(scenario, step=STEP["sledge"]), Path(path), fmi)
