@@ -39,7 +39,7 @@ def print_means(build: TunableBuild, keys: list[str]) -> None:
         base = 1e3 * np.array(build.ends_of_starts(case))
         place = np.arange(STARTS)
         rest = base.real - np.polyval(np.polyfit(place, base.real, 1), place)
-        print(f"{case}: {base.mean() / 1e3:.4f} m, scatter {np.sqrt(rest @ rest / (STARTS - 2)):.1f} mm")
+        print(f"{case}: {base.real.mean() / 1e3:.4f} m, scatter {np.sqrt(rest @ rest / (STARTS - 2)):.1f} mm")
         for key in keys:
             for factor in FACTORS:
                 shifts = 1e3 * np.array(build.ends_of_starts(case, key, factor)) - base

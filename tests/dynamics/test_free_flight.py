@@ -71,7 +71,7 @@ def test_snow_that_hardly_holds_an_edge_is_sheared_along_a_parabola() -> None:
     step, speed, depth, displacement = 5e-3, 10.0, 2e-3, 5e-5
     on_edge = edged_scenario(ski=rigid_ski(), edge_deg=45.0)
     body = replace(rigid(body_of(on_edge), np.array([6.0, 8.0, 10.0])), gravity=np.array([0.0, GRAVITY, 0.0]))
-    snow = SnowField(1.0, 1.0, 10.0, shear_displacement=displacement, part_along=1e-3, part_across=1.0)
+    snow = SnowField(1.0, 1.0, 10.0, shear_displacement=displacement, part_along=3e-4, part_across=1.0)
     contact = SnowContact(snow, [Runner.of(on_edge.ski, nodes=clamped_ski(on_edge, 40).node)] * 2, spacing=1e-3)
     height = 0.5 * float(on_edge.ski.at(0.0).width) * math.sin(math.radians(45.0)) - depth
     dynamics = Dynamics(body, contact, np.array([0.0, 0.0, height]), np.eye(3), fixed(step))

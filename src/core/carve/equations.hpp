@@ -126,7 +126,7 @@ struct CarveGroove {
   CarvePressure pressure;
 };
 
-// Put together at a state; without `linearises` depth and force at the stations alone.
+// Put together at a state; without `linearises` only depth and force at the stations.
 void assemble(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
               CarveEquations& out, bool linearises = true);
 

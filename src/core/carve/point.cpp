@@ -67,7 +67,7 @@ struct CarvePoint::Passed {
   const bool ground;
   double bevel_width, round_width, sine, cosine;
   const CarveBoot<double> boot;
-  std::vector<Place> origin;                // of each place
+  std::vector<Place> origin;                // where each place is on the ski
   std::vector<double> place, groove, base;  // each with the depths of groove and base there
   std::vector<Felt> felt;
   std::vector<Piece> pieces;

@@ -18,6 +18,7 @@ void SnowContact::Before::put_back(GrooveLines& into) const {
 namespace {
 
 constexpr double MOST_PARTS = 1e4;  // into which a way is divided
+constexpr double LONGER = 3.0;      // parts of lines that do not pass a deepest place of the base, over those that do
 
 // The polyline that a section presses into its line: the base where it is wet, and the way of its edge since it was
 // marked last. Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
@@ -88,14 +89,13 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
 struct Touch {
   const Base& s;
   int i;
-  const Snow& snow;
-  GrooveLines& lines;
+  const GrooveLines& lines;
   int slot;
   double to_end;  // see `press_deepest`
 
   double edge_place(int k) const { return s[GRIP_PLACE][i] + s[of_edge(LEFT_X, k)][i]; }
   double edge_depth(int k) const { return s[of_edge(LEFT_DEPTH, k)][i]; }
-  double& of_line(LineField left, int k) const { return lines.values[of_edge(left, k)][slot]; }
+  double of_line(LineField left, int k) const { return lines.values[of_edge(left, k)][slot]; }
   // Whether an edge was in the snow at the last accepted pose.
   bool was_in_snow(int k) const { return lines.values[MARKED][slot] > 0.5 && of_line(LEFT_MARK_DEPTH, k) > 0.0; }
 
@@ -156,10 +156,9 @@ struct Touch {
     return mark < edge ? Pressing{{mark, edge}, {before, deep}, 2} : Pressing{{edge, mark}, {deep, before}, 2};
   }
 
-  // Keep the base that touches a line: everything under it, and the ways of its edges. A base with both edges in the
-  // snow is kept one edge after the other: left and right then have the same bits.
-  void press_base() const {
-    Ground ground = lines.ground(slot);
+  // A ground takes the base that touches its line: everything under it, and the ways of its edges. A base with both
+  // edges in the snow is pressed one edge after the other: left and right then have the same bits.
+  bool press_base(Ground& ground) const {
     const DelayedGround& delayed = lines.delayed[std::size_t(slot)];
     const double at = s[GRIP_PLACE][i], from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
     const bool both = edge_depth(0) > 0.0 && edge_depth(1) > 0.0;
@@ -173,30 +172,21 @@ struct Touch {
     for (int k = 0; k < 2; k++)
       if (was_in_snow(k) && (both || !is_plane || k != first))
         changed = press_undelayed(way_of(k), delayed, ground) || changed;
-    if (!changed) return;
-    ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
-    lines.keep(slot, ground);
+    return changed;
   }
 };
 
 }  // namespace
 
-// The ground of a line takes the base that touches it.
-void SnowContact::press_base(int k, std::int64_t line, GrooveLines& lines) const {
-  const Base& s = sections(k).base;
-  const int i = s.index(line);
-  const int slot = lines.slot(line);
-  if (s.touches(i)) Touch{s, i, *snow_, lines, slot, scratch_[std::size_t(slot)]}.press_base();
-}
-
-// The ground of a line takes the base only where it was deepest since its mark.
-void SnowContact::press_deepest(int k, std::int64_t line, GrooveLines& lines) const {
+// The ground of a line takes the base that touches it, or the base only where it was deepest since its mark.
+void SnowContact::press(int k, std::int64_t line, GrooveLines& lines, bool only_deepest) const {
   const Base& s = sections(k).base;
   const int i = s.index(line), slot = lines.slot(line);
   if (!s.touches(i)) return;
+  const Touch touch{s, i, lines, slot, scratch_[std::size_t(slot)]};
   Ground ground = lines.ground(slot);
-  if (!Touch{s, i, *snow_, lines, slot, scratch_[std::size_t(slot)]}.press_deepest(ground)) return;
-  ground.simplify(snow_->knot_area * s[DEEPEST][i] * (s[WET_TO][i] - s[WET_FROM][i]), KNOTS);
+  if (!(only_deepest ? touch.press_deepest(ground) : touch.press_base(ground))) return;
+  ground.simplify(snow_->knot_area * s[DEEPEST][i] * std::max(s[WET_TO][i] - s[WET_FROM][i], 0.0), KNOTS);
   lines.keep(slot, ground);
 }
 
@@ -204,12 +194,12 @@ void SnowContact::press_deepest(int k, std::int64_t line, GrooveLines& lines) co
 void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) {
   const Sections& s = sections(k);
   kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
-  for (std::int64_t n = lines.first; n < lines.end; n++) press_base(k, n, lines);
+  for (std::int64_t n = lines.first; n < lines.end; n++) press(k, n, lines, false);
   kernels_->mark(*snow_, s.base, nullptr, is_eased ? &s.edge : nullptr, lines);
 }
 
-// Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
-int SnowContact::parts(int k, const Situation& at) const {
+// Number of parts of the way from the accepted pose, `longer` times as long along the ski; 1 if it took no time.
+int SnowContact::parts(int k, const Situation& at, double longer) const {
   if (!(at.dt > 0.0)) return 1;
   const Pose& to = at.poses[std::size_t(k)];
   const Pose& from = state_.accepted[std::size_t(k)];
@@ -217,7 +207,7 @@ int SnowContact::parts(int k, const Situation& at) const {
   for (const double station : {runner(k).tip, runner(k).tail}) {
     const Vector3 way = to.position - from.position + station * (to.axis(0) - from.axis(0));
     const double along = dot(way, from.axis(0)), across = std::sqrt(std::max(dot(way, way) - along * along, 0.0));
-    most = std::max({most, std::fabs(along) / snow_->part_along, across / snow_->part_across});
+    most = std::max({most, std::fabs(along) / (longer * snow_->part_along), across / snow_->part_across});
   }
   return int(std::ceil(std::min(most, MOST_PARTS) - 1e-9));
 }
@@ -225,7 +215,7 @@ int SnowContact::parts(int k, const Situation& at) const {
 // The history of all lines along the way, up to but without its end.
 void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   if (state_.accepted.empty()) return;
-  const int parts = this->parts(k, to);
+  const int parts = this->parts(k, to, 1.0);
   for (int part = 1; part < parts; part++) {
     interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], nullptr, to.dt, double(part) / parts,
                 on_way_);
@@ -234,14 +224,14 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   }
 }
 
-// The lines whose ground depends on the way between two poses and not on its ends alone: ahead, where the snow was not
-// touched yet, where the base passes its deepest place or did so less than the way before, and where an edge slips
-// unless all of the edge that comes to the line slips to the same side.
+// Lines whose ground depends on the way between two poses, not on its ends alone: ahead on untouched snow, where the
+// base passes its deepest place or did so less than the way before, and where an edge slips unless all of the edge that
+// comes to the line slips to the same side.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
   const double most = snow_->shear_displacement - THIN;  // a slip leaves the anchor as far off, but for rounding
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
-  for (Column* each : {&is_needed_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
+  for (Column* each : {&is_needed_, &is_deepest_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
   Column& marked_depth = scratch_;  // by slot; 0 where the ski was not in the snow
   int side[2] = {}, alike[2] = {};  // of each edge: whether it slips to the left, 1, or to the right, -1; lines before
   for (std::int64_t n = lines.first; n < lines.end; n++) {
@@ -260,7 +250,7 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
     return n >= lines.first && n < lines.end ? marked_depth[std::size_t(lines.slot(n))] : 0.0;
   };
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
-  needed_.clear();
+  needed_.clear(), deepest_.clear();
   bool ahead = true;
   std::int64_t deepest = lines.end + over + 1;
   for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
@@ -268,19 +258,20 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
     const double rear = depth(n - over - 1), here = depth(n - over), front = depth(n - over + 1);
     if (std::min({rear, here, front}) > 0.0 && here >= std::max(rear, front)) deepest = n - over;
     ahead = ahead && !(depth(n) > 0.0);
-    if ((ahead || (n >= deepest - over && n <= deepest + over)) && !(lines.station(n, to) > reach))
-      is_needed_[slot] = 1.0;
+    const bool is_reached = !(lines.station(n, to) > reach), passes = n >= deepest - over && n <= deepest + over;
+    if ((ahead || passes) && is_reached) is_needed_[slot] = 1.0;
     if (is_needed_[slot] > 0.0) needed_.push_back(n);
+    if (passes && is_reached) is_deepest_[slot] = 1.0, deepest_.push_back(n);
   }
 }
 
-// [march] As `march`, for the lines that need it. They also take the base's deepest place on the way to the end, and
-// the places where its edges turn back.
+// [march] As `march`, for the lines that need it, in longer parts where the base passes no deepest place. They also
+// take the deepest place on the way to the end, and the places where edges turn back.
 void SnowContact::march_where_needed(int k, const Situation& to) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (state_.accepted.empty()) return;
   const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
-  const int parts = this->parts(k, to);
+  const int parts = this->parts(k, to, 1.0), long_parts = this->parts(k, to, LONGER);
   if (parts < 2) return;
   const Vector3 way = end.position - from.position;
   find_needed(lines, std::sqrt(dot(way, way)), runner(k), end);
@@ -289,15 +280,17 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (const std::int64_t n : needed_) before.lines.emplace_back(lines, lines.slot(n));
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
+    const bool ends_long = part * long_parts / parts > (part - 1) * long_parts / parts;
+    const double* of = (ends_long ? is_needed_ : is_deepest_).data();
     interpolate(from, end, &to.motions[std::size_t(k)], to.dt, double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, lines, is_needed_.data(), s.base);
+    kernels_->find_sections(runner(k), on_way_, lines, of, s.base);
     kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
-    for (const std::int64_t n : needed_) press_base(k, n, lines);
-    kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
+    for (const std::int64_t n : ends_long ? needed_ : deepest_) press(k, n, lines, false);
+    kernels_->mark(*snow_, s.base, of, nullptr, lines);
   }
   kernels_->find_sections(runner(k), end, lines, is_needed_.data(), s.base);
   kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
-  for (const std::int64_t n : needed_) press_deepest(k, n, lines);
+  for (const std::int64_t n : needed_) press(k, n, lines, true);
   kernels_->drag_anchors(*snow_, s.base, is_needed_.data(), lines);
 }
 

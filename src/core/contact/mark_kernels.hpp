@@ -120,10 +120,10 @@ void drag_anchors(const Snow& snow, const Base& s, const double* of, GrooveLines
 
 // [deepest] Where a base was deepest since it was marked last. Over the way w from 0 to 1 the depth at each share of
 // the width is a parabola d₀ + (d₁ - d₀) w + b w (1 - w), b half the way times the change of the climb. Where its
-// vertex at 1 - u lies on the way, it is u² b deeper than d₁. Without it the ground misses b/6 in the mean. The slope
-// at the end is that of the base there: past a kink, after which the base is straight, there is no vertex. So the chord
-// counts as much deeper as the unbent base is higher at the mark than here beyond the mean of both slopes: 0 for a
-// parabola. By slot, 2 u + d₁ - d₀ of a line with a vertex on the way, else NO_VERTEX.
+// vertex is at a w = 1 - u between 0 and 1, it is u² b deeper than d₁. Without it the ground misses b/6 in the mean.
+// The slope at the end is that of the base there: past a kink, after which the base is straight, there is no vertex. So
+// the chord counts as much deeper as the unbent base is higher at the mark than here beyond the mean of both slopes: 0
+// for a parabola. By slot, 2 u + d₁ - d₀ of a line with a vertex on the way, else NO_VERTEX.
 template <class V>
 void find_vertices(const Runner& runner, const Base& s, const GrooveLines& lines, double* out) {
   for_lanes<V>(s, lines, [&](int i, int j) {

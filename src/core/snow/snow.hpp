@@ -53,7 +53,7 @@ struct Snow {
   RateLaw rate;
   double knot_area = 1e-4;  // share of depth times width of a contact below which a knot is dropped
   // longest way (m) of tip and tail, along the ski and across it, over which the history is marched at once
-  double part_along = 0.01, part_across = 2e-3;
+  double part_along = 0.006, part_across = 2e-3;
   Archive archive;
 };
 

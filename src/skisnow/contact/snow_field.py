@@ -24,7 +24,7 @@ STICK_DISPLACEMENT: Final = 0.02e-3
 """Way of the base (m) to full friction, until which it sticks (modelling assumption): Coulomb's law, regularised."""
 KNOT_AREA: Final = 1e-4
 """Share of a contact's depth times width below which a knot of the groove is dropped (modelling assumption)."""
-PART_ALONG: Final = 0.01
+PART_ALONG: Final = 0.006
 """Longest path (m) of tip or tail along the ski over which the history advances at once (modelling assumption)."""
 PART_ACROSS: Final = 2e-3
 """The same across the ski (m): what an edge cuts depends on where it was in between (modelling assumption)."""

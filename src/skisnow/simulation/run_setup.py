@@ -39,7 +39,7 @@ FAST_LONGEST: Final = 10e-3
 """Longest step (s) of the fast method (that of outputs)."""
 FAST_GROOVE: Final = 3.0
 """Times the groove's tolerance, to which the fast method simplifies grooves."""
-FAST_PART: Final = 0.02
+FAST_PART: Final = 0.015
 """Path along a ski (m) over which the fast method advances its history at once."""
 FLOATING_DEPTH: Final = 0.1
 """Depth (m) by which a flat base must carry the sledge, or it has sunk from the start."""
