@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -16,11 +17,19 @@ def module_of(path: Path) -> str:
     return ".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
 
 
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """All statements below a node: `ast.walk` visits expressions, too, and takes much longer."""
+    parts = ("body", "handlers", "orelse", "finalbody", "cases")
+    for each in chain.from_iterable(getattr(node, part, ()) for part in parts):
+        yield each
+        yield from statements(each)
+
+
 def imported(path: Path, modules: set[str]) -> Iterator[str]:
     """Modules of the package that a file imports, anywhere in it; of a folder the file that the name stands in."""
     own = module_of(path).split(".")
     folder = own if path.name == "__init__.py" else own[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in statements(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.level:
             place = [*folder[: len(folder) - node.level + 1], *(node.module.split(".") if node.module else [])]
             for name in node.names:

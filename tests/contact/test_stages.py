@@ -103,7 +103,7 @@ def require_deeper_ground(ground: FloatArray, pressed: FloatArray) -> None:
     at = np.linspace(-0.031, 0.031, 4001)
     at = at[np.abs(at[:, None] - np.append(ground[:, 0], pressed[:, 0])).min(axis=1) > 1e-6]
     expected = np.maximum(depths(ground, at), depths(pressed, at))
-    assert depths(found, at) == pytest.approx(expected, abs=1e-12)
+    assert np.abs(depths(found, at) - expected).max() < 1e-12  # approx takes a third of a second for so many
     assert changed == bool((depths(pressed, at) > depths(ground, at) + 1e-12).any())
     mirror = np.array([-1.0, 1.0])
     other, _ = core.pressed_ground((ground * mirror)[::-1].copy(), (pressed * mirror)[::-1].copy())

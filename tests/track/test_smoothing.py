@@ -236,7 +236,7 @@ def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
     return present(estimate_path(np.arange(float(len(place))) / rate, place, one, one))
 
 
-@pytest.mark.parametrize(("period", "rate", "count"), [(4.0, 1.0, 50), (17.0, 2.0, 100), (4.0, 10.0, 200)])
+@pytest.mark.parametrize(("period", "rate", "count"), [(4.0, 1.0, 50), (17.0, 2.0, 100), (4.0, 10.0, 120)])
 def test_linked_turns_at_constant_speed(period: float, rate: float, count: int) -> None:
     """No maximum at an end, and no length below the polyline's."""
     place = linked_turns(period, rate=rate, count=count)
@@ -254,15 +254,15 @@ def test_linked_turns_at_constant_speed(period: float, rate: float, count: int) 
     "name", ["varied speed, noise 0.5 m", pytest.param("constant speed, noise 0.5 m", marks=pytest.mark.slow)]
 )
 def test_intervals_contain_the_truth(name: str) -> None:
-    """A short form of the benchmark: of 10 tracks chance leaves out at most 3 in 987 of 1000 cases."""
-    found = estimates(replace(KINDS[name], duration=8.0), range(10))
-    assert len(found) == 10
+    """A short form of the benchmark: of 5 tracks chance leaves out at most 2 in 991 of 1000 cases."""
+    found = estimates(replace(KINDS[name], duration=8.0), range(5))
+    assert len(found) == 5
     for truths, intervals in (
         ([each.track.max_speed for each in found], [each.max_speed for each in found]),
         ([each.track.length for each in found], [each.length for each in found]),
     ):
         inside = [low <= truth <= high for truth, (_, low, high) in zip(truths, intervals, strict=True)]
-        assert sum(inside) >= 7
+        assert sum(inside) >= 3
         widths = [(high - low) / truth for truth, (_, low, high) in zip(truths, intervals, strict=True)]
         assert 0.0 < float(np.median(widths)) < 0.15
 
@@ -285,17 +285,12 @@ def test_coverage_of_200_tracks(name: str) -> None:
 
 
 def test_more_noise_is_a_wider_interval() -> None:
-    widths = []
-    for noise in (0.05, 0.5, 2.0):
-        made = simulated_track(Kind(noise=noise, duration=6.0), 3)
-        length = estimate(made.place).length()
-        widths.append(length.high - length.low)
+    """And the same track gives the same numbers."""
+    places = [simulated_track(Kind(noise=noise, duration=4.0), 3).place for noise in (0.05, 0.5, 2.0)]
+    lengths = [estimate(place).length() for place in (*places, places[0])]
+    widths = [length.high - length.low for length in lengths]
     assert widths[0] < widths[1] < widths[2]
-
-
-def test_same_track_gives_the_same_numbers() -> None:
-    place = simulated_track(Kind(duration=3.0), 1).place
-    assert estimate(place).max_speed() == estimate(place).max_speed()
+    assert lengths[0] == lengths[3]
 
 
 def test_gap_is_straight_and_a_pause_is_nothing() -> None:
