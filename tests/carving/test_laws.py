@@ -145,7 +145,7 @@ def test_a_law_along_either_groove(choice: dict[str, Any]) -> None:
     assert abs(found.residual_moment or 0.0) < 1e-5
 
 
-def test_grip_by_the_edge_angle() -> None:
+def test_grip_by_the_edge_angle_and_grip_by_the_depth() -> None:
     """Eqn 13 under a rigid wedge: F = H_V e² L/(2 tan ϑ) asks for F tan ϑ of S_f0 (1 - k ϑ) e L."""
     angle = math.radians(50.0)
     stress = 0.3e6 * (1.0 - 0.5 * angle)
@@ -156,10 +156,7 @@ def test_grip_by_the_edge_angle() -> None:
     )
     assert (below.holds, above.holds) == (True, False)
     assert above.side_force_limit == pytest.approx(load * math.tan(angle), rel=2e-6)
-
-
-def test_grip_by_the_depth() -> None:
-    """S_f (1 + e/d) e L."""
+    # S_f (1 + e/d) e L.
     found = carve(rigid_ski(), snow(0.2), **CASE, unloading_ratio=1.0, shear=Deepening(0.1e6, 2e-3))
     depth = math.sqrt(2.0 * 800.0 / (0.2e9 * LENGTH))
     assert found.side_force_limit == pytest.approx(0.1e6 * (1.0 + depth / 2e-3) * depth * LENGTH, rel=1e-6)

@@ -134,7 +134,7 @@ def is_same(one: Equilibrium, other: Equilibrium) -> bool:
     return json.dumps(equilibrium_dict(one)) == json.dumps(equilibrium_dict(other))
 
 
-def test_every_input_reaches_the_turn() -> None:
+def test_every_input_reaches_the_turn_and_numbers_of_numpy_are_numbers() -> None:
     ski, angle = read_ski("slalom"), math.radians(45.0)
     plain = carve(ski, FIRM, edge_angle=angle, load=800.0, unloading_ratio=10.0, elements=80)
     assert is_same(answer_question(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 10.0})).equilibrium, plain)
@@ -145,10 +145,7 @@ def test_every_input_reaches_the_turn() -> None:
     answer = answer_question(carve_question(REQUEST | NUMBERS | CHOSEN | {"unloading_ratio": 10.0}))
     assert is_same(answer.equilibrium, chosen)
     assert not is_same(chosen, plain)
-
-
-def test_numbers_of_numpy_are_numbers() -> None:
-    """As `np.radians` gives them."""
+    # As `np.radians` gives them.
     asked: dict[str, Any] = {"unloading_ratio": 10.0, "elements": 80}
     plain = carve(read_ski("slalom"), FIRM, edge_angle=math.radians(45), load=800.0, **asked)
     other = carve(read_ski("slalom"), FIRM, edge_angle=np.radians(45), load=np.float64(800.0), **asked)

@@ -305,7 +305,7 @@ def test_a_rigid_wedge_in_closed_form() -> None:
     assert grip == pytest.approx([0.5, 0.5, 0.0, steeper / 2.0], abs=1e-6)
 
 
-def test_fields_sum_to_the_derivative_by_a_factor() -> None:
+def test_fields_sum_to_the_derivative_by_a_factor_and_forces_grow_as_the_largest_does() -> None:
     found = carve(read_ski("slalom"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
     exact = derivatives(found)
     fields = exact.fields("edge_depth_mm")
@@ -315,9 +315,6 @@ def test_fields_sum_to_the_derivative_by_a_factor() -> None:
         values = getattr(model.ski.at(fields["beam_m"]), table)
         (factor,) = exact.sensitivity("edge_depth_mm", [f"edit.{column}_N_m2"])
         assert fields[f"{column}_per_N_m3"] @ (length * values) == pytest.approx(factor.derivative, rel=2e-3)
-
-
-def test_forces_grow_as_the_largest_does() -> None:
     found = carve(read_ski("carver"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
     exact = derivatives(found)
     for name in ("load_N", "ski.waist_width_mm", "ski.EI_N_m2[2]", "ski.boot_position_mm"):

@@ -61,15 +61,12 @@ def test_unloading_of_a_wedge_is_a_square(ratio: float) -> None:
     assert wrench(contact, placed(angle, e - 1.01 * e / ratio))[2] == pytest.approx(0.0, abs=1e-12)  # rounding
 
 
-def test_elastic_snow_keeps_nothing() -> None:
+def test_elastic_snow_keeps_nothing_and_the_energy_of_a_cycle_is_that_of_the_groove() -> None:
     angle = math.radians(45)
     contact = pressed(SnowField(H, S, 1.0), placed(angle, 2e-3))
     fresh = SnowContact(SnowField(H, S, 1.0), [straight()])
     assert wrench(contact, placed(angle, 1e-3)) == pytest.approx(wrench(fresh, placed(angle, 1e-3)), rel=1e-12)
-
-
-def test_the_energy_of_a_cycle_is_that_of_the_groove() -> None:
-    """½ H_V ε² (1 - H_V/k_u) over the wedge's width: H_V e³ L (1 - 1/κ)/(6 tan ϑ)."""
+    # ½ H_V ε² (1 - H_V/k_u) over the wedge's width: H_V e³ L (1 - 1/κ)/(6 tan ϑ).
     angle, e, ratio = math.radians(40), 3e-3, 8.0
     contact = pressed(SnowField(H, S, ratio), placed(angle, e))
     lost = H * e**3 * LENGTH * (1.0 - 1.0 / ratio) / (6.0 * math.tan(angle))

@@ -135,21 +135,16 @@ def relaxed(pose: Placed, steps: int, spacing: float = 1e-3) -> tuple[float, flo
 LEFT = (1.0 + SHARE * math.exp(-2.0 * (1.0 + SHARE))) / (1.0 + SHARE)
 
 
-def test_stress_relaxes_at_a_held_depth_to_the_second_order() -> None:
+def test_stress_relaxes_at_a_held_depth_to_the_second_order_and_a_wedge_relaxes_as_all_its_points() -> None:
     errors = []
     for steps in (4, 8, 16):
         first, then = relaxed(flat(2e-3), steps)
         assert first == pytest.approx(H * AREA * 2e-3)
         errors.append(abs(then / first - LEFT))
     assert errors[0] > 3.5 * errors[1] > 12.0 * errors[2] > 0.0
-
-
-def test_a_wedge_relaxes_as_all_its_points() -> None:
-    """All but its ends, which lie between two places.
-
-    The delayed depth falls to 0 at the place beyond the edge: half of it is missing on at most one spacing, under the
-    highest pressure, which is twice the mean. That is the share spacing/width of the force that relaxes.
-    """
+    # All but its ends, which lie between two places.
+    # The delayed depth falls to 0 at the place beyond the edge: half of it is missing on at most one spacing, under the
+    # highest pressure, which is twice the mean. That is the share spacing/width of the force that relaxes.
     depth = 3e-3
     pose = (np.array([[0.0, 0.0, 0.5 * WIDTH * math.sin(0.7) - depth]]), edged(0.7)[None])
     for spacing in (1e-3, 2.5e-4, 6.25e-5):

@@ -96,7 +96,7 @@ def coefficients(friction: Any) -> list[float]:
     return [law.constant, law.linear, law.square, law.film]
 
 
-def test_friction_laws_are_coefficients() -> None:
+def test_friction_laws_are_coefficients_and_a_water_film_is_its_own_formula() -> None:
     """μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀)."""
     assert coefficients(0.07) == coefficients(ConstantFriction(0.07)) == [0.07, 0.0, 0.0, 0.0]
     assert coefficients(LinearFriction(0.04, 0.002)) == [0.04, 0.002, 0.0, 0.0]
@@ -105,9 +105,6 @@ def test_friction_laws_are_coefficients() -> None:
     assert own.friction_in_python is own.friction
     assert snow(friction=LinearFriction(0.04, 0.002)).friction_in_python is None
     assert snow(friction=0.05).friction_in_python is None
-
-
-def test_a_water_film_is_its_own_formula() -> None:
     law = WaterFilmFriction(dry_friction=0.2, lubricated_friction=0.02, viscous_slope=0.001, film_speed=3.0)
     asked = snow(friction=law)._friction()
     assert (asked.constant, asked.linear, asked.film, asked.film_speed) == (0.02, 0.001, 0.2, 3.0)

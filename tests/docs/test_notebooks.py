@@ -26,7 +26,7 @@ def test_there_are_four_of_about_a_dozen_cells() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_kept_without_outputs(name: str) -> None:
+def test_kept_without_outputs_and_page_has_every_cell(name: str) -> None:
     """A notebook that was run and saved would be of that machine and day."""
     notebook = json.loads((DOCS / "tutorials" / f"{name}.ipynb").read_text(encoding="utf-8"))
     assert (notebook["nbformat"], notebook["nbformat_minor"]) == (4, 5)
@@ -35,10 +35,6 @@ def test_kept_without_outputs(name: str) -> None:
         if cell["cell_type"] == "code":
             assert cell["outputs"] == []
             assert cell["execution_count"] is None
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_page_has_every_cell(name: str) -> None:
     page, place = text_of_page(name), 0
     for cell in write_notebooks.cells_of(name):
         found = page.find(cell.text, place)

@@ -17,13 +17,10 @@ from .page_commands import FIRST_WORDS, PACKAGES, PAGES, REASONS, ROOT, Block, b
 SHELL = ["bash", "-euo", "pipefail", "-c"]
 
 
-def test_few_blocks_are_marked_and_each_has_a_known_reason() -> None:
+def test_few_blocks_are_marked_and_each_has_a_known_reason_and_every_command_is_in_a_fenced_block() -> None:
     marks = [block.mark for page in PAGES for block in blocks(page) if block.mark]
     assert len(marks) <= 10
     assert set(marks) <= REASONS | PACKAGES
-
-
-def test_every_command_is_in_a_fenced_block() -> None:
     for page in PAGES:
         indented = re.findall(r"^    \S.*$", (ROOT / page).read_text(encoding="utf-8"), re.MULTILINE)
         fenced = "".join(block.text for block in blocks(page))

@@ -36,21 +36,15 @@ def sections(documented: Any) -> dict[str, str]:
     return dict(zip(parts[1::2], parts[2::2], strict=True))
 
 
-def test_every_function() -> None:
+def test_every_function_and_every_class_and_every_law() -> None:
     for name, function in FUNCTIONS.items():
         parts = sections(function)
         assert {"Returns", "See Also", "References"} <= set(parts), name
         listed = {each.strip() for line in re.findall(r"^(\w.*)$", parts.get("Parameters", ""), re.MULTILINE)
                   for each in line.split(" : ")[0].split(",")}  # fmt: skip
         assert set(inspect.signature(function).parameters) - listed == set(), name
-
-
-def test_every_class() -> None:
     undocumented = [name for name, each in CLASSES.items() if "See Also" not in sections(each)]
     assert [name for name in undocumented if not issubclass(CLASSES[name], Exception)] == []
-
-
-def test_every_law() -> None:
     headings = {"Attributes", "See Also", "Notes", "References", "Examples"}
     assert [law.__name__ for law in LAWS if not headings <= set(sections(law))] == []
 

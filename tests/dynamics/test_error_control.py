@@ -30,17 +30,13 @@ def run(tolerance: float = StepControl().tolerance, **changes: float) -> Dynamic
 
 
 @CASE
-def test_half_the_tolerance(changes: dict[str, float]) -> None:
+def test_half_the_tolerance_and_a_last_bit_of_the_start_speed(changes: dict[str, float]) -> None:
     """All steps together may err by their number times the tolerance; the end moves by less."""
     tolerance = StepControl().tolerance
     one, other = run(**changes), run(tolerance / 2.0, **changes)
     assert 0.0 < np.linalg.norm(one.position - other.position) < one.counts[0] * tolerance
     assert other.counts[0] > one.counts[0]
-
-
-@CASE
-def test_a_last_bit_of_the_start_speed(changes: dict[str, float]) -> None:
-    """The ladder gives both the same steps, so that nothing is added to the 3.5e-12 m by which one leads."""
+    # The ladder gives both the same steps, so that nothing is added to the 3.5e-12 m by which one leads.
     one, other = run(**changes), run(start__speed_m_per_s=7.0 * (1.0 + 1e-12), **changes)
     assert one.counts == other.counts
     assert 0.0 < np.linalg.norm(one.position - other.position) < 1e-10

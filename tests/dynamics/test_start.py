@@ -116,13 +116,10 @@ def test_lengths_and_tolerances(name: str, value: float) -> None:
         StepControl(**given_so)
 
 
-def test_shortest_above_longest() -> None:
+def test_shortest_above_longest_and_a_first_step_is_no_longer_than_the_longest() -> None:
     with raises(ParameterError, "out_of_range", shortest=0.01, longest=0.006):
         StepControl(shortest=0.01)
-
-
-def test_a_first_step_is_no_longer_than_the_longest() -> None:
-    """So a glide that accepts every step takes none longer."""
+    # So a glide that accepts every step takes none longer.
     scenario = given(start__speed_m_per_s=1.0, snow__shear_displacement_mm=0.5)  # loose enough for long steps
     dynamics = started(scenario, StepControl(first=0.5, longest=1e-3, tolerance=1.0, closeness=1e-9))
     assert dynamics.advance(0.02) is Ended.REACHED

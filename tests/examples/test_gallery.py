@@ -37,13 +37,10 @@ def find() -> Find:
 # Tests on the slope
 
 
-def test_one_series(find: Find) -> None:
+def test_one_series_and_gauge_offset(find: Find) -> None:
     """H_V = F/V, V = L e²/(2 tan 45°) by hand."""
     assert find("one_series")["hardness"] == pytest.approx(492 / (200 * 7.0**2 / 2), rel=1e-12)
-
-
-def test_gauge_offset(find: Find) -> None:
-    """The offset and the hardness that the readings were made with, to the digits that they were written with."""
+    # The offset and the hardness that the readings were made with, to the digits that they were written with.
     found = find("gauge_offset")
     assert found["offset"] == pytest.approx(0.30, abs=1e-3)
     assert found["corrected"] == pytest.approx(0.10, rel=2e-3)
@@ -168,17 +165,14 @@ def test_skid_to_carve(find: Find) -> None:
 # Measured tracks
 
 
-def test_radius_of_a_track(find: Find) -> None:
+def test_radius_of_a_track_and_two_tracks(find: Find) -> None:
     """The arc that was made; its mean radius within what 51 points that are 10 mm off allow."""
     found = find("radius_of_a_track")
     turn = found["turn"]
     assert turn.direction == "left"
     assert turn.length / turn.mean_radius == pytest.approx(turn.length / 15.0, abs=3 * turn.turned_angle_sd)
     assert turn.mean_radius == pytest.approx(15.0, rel=0.015)
-
-
-def test_two_tracks(find: Find) -> None:
-    """Circles about one centre; at equal arc length s the angles s/12.5 and s/12 differ."""
+    # Circles about one centre; at equal arc length s the angles s/12.5 and s/12 differ.
     found = find("two_tracks")["largest"]
     assert found["nearest place"] == pytest.approx(0.5, abs=1e-4)
     way = 12 * math.pi / 2
@@ -205,7 +199,7 @@ def test_every_script_has_its_place() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_examples_are_short_and_use_public_names(name: str) -> None:
+def test_examples_are_short_and_use_public_names_and_every_example_is_described(name: str) -> None:
     source = (builder().EXAMPLES / f"{name}.py").read_text(encoding="utf-8")
     assert len(source.splitlines()) < 60
     tree = ast.parse(source)
@@ -215,10 +209,6 @@ def test_examples_are_short_and_use_public_names(name: str) -> None:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "skisnow":
             assert node.attr in skisnow.__all__
     assert not re.search(r"skisnow\S*\._", source)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_example_is_described(name: str) -> None:
     example = builder().words(name)
     assert example.title and example.text and example.figure and example.known
     assert (builder().PICTURES / f"{name}.png").exists()

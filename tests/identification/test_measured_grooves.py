@@ -45,15 +45,12 @@ def measured(
     return MeasuredGrooves("marks.csv", d, w, r, spread[0], spread[1], spread[2])
 
 
-def test_a_groove_is_what_carve_leaves() -> None:
+def test_a_groove_is_what_carve_leaves_and_hardness_scales_as_in_the_wedge() -> None:
     """Depth of the wedge 2 % of its width tan 30°, and e (1 - 1/10) of the deepest edge stays."""
     groove = present(residuals_of().groove({"snow.H_V_N_per_mm3": 0.2}))
     assert groove.depth / 0.9 / groove.width == pytest.approx(math.tan(math.radians(30.0)), rel=0.1)  # twist
     assert groove.turn_radius == pytest.approx(16.2, abs=0.5)  # the simulated turn's median radius
-
-
-def test_hardness_scales_as_in_the_wedge() -> None:
-    """e = √(2 F tan ϑ/(H_V L)) for a rigid ski: a quarter of the hardness doubles the depth; skis bend, so 20 %."""
+    # e = √(2 F tan ϑ/(H_V L)) for a rigid ski: a quarter of the hardness doubles the depth; skis bend, so 20 %.
     soft, hard = (residuals_of().groove({"snow.H_V_N_per_mm3": value}) for value in (0.1, 0.4))
     assert present(soft).depth / present(hard).depth == pytest.approx(2.0, rel=0.2)
 

@@ -38,14 +38,10 @@ def test_there_are_eight() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_files_obey_their_schemas(name: str) -> None:
+def test_files_obey_their_schemas_and_each_number_of_a_case_has_its_unit(name: str) -> None:
     for content, kind in ((read_case(name), "case"), (read_answer(name), "answer")):
         validator = jsonschema.validators.validator_for(schema(kind))(schema(kind))
         assert list(validator.iter_errors(content)) == []
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_each_number_of_a_case_has_its_unit(name: str) -> None:
     keys = {key for key in numbers(read_case(name)) if key not in {"count", "spread_over"}}
     assert [key for key in keys if unit_of(key) is None] == []
 

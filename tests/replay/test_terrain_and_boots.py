@@ -63,13 +63,10 @@ def test_heights_are_those_that_the_skis_run_on() -> None:
     assert max(terrain.x[0], terrain.y[0]) < run.place[:, :2].min() - 29.0
 
 
-def test_a_long_run_has_no_more_places_than_a_screen_needs() -> None:
+def test_a_long_run_has_no_more_places_than_a_screen_needs_and_meshes_lie_on_the_snow() -> None:
     run = over(hills(X[:, None], Y))
     far = present(replay_of_run(replace(run, place=run.place * 60.0)).terrain)
     assert 30_000 < far.height.size < 45_000
-
-
-def test_meshes_lie_on_the_snow() -> None:
     replay = replay_of_run(over(hills(X[:, None], Y)))
     for mesh, least, most in ((snow_mesh(replay), 0.0, 1e-9), (grid_mesh(replay), 4.5e-4, 5.5e-4)):
         above = mesh.vertices[:, 2] - present(replay.terrain).heights(*mesh.vertices[:, :2].T)

@@ -41,15 +41,12 @@ def _table(rows: list[tuple[object, ...]], synthetic: bool = False) -> str:
     return table_latex(Table("test", "Values of H_V in 5 %.", columns, rows, synthetic=synthetic))
 
 
-def test_a_row_has_its_cells_between_ampersands() -> None:
+def test_a_row_has_its_cells_between_ampersands_and_a_long_table_breaks_over_pages() -> None:
     text = _table([("a & b", (-2.0e-7, (0.001, 20.0)), 0.0001)])
     assert r"a \& b & \num{-2.00e-7} [\num{0.00100}, \num{20.0}] & $<$ 0.001 \\" in text
     assert r"{Site} & {\makecell{$H_\mathrm{V}$" in text
     assert r"\begin{tabular}{lrr}" in text
     assert all(rule in text for rule in (r"\toprule", r"\midrule", r"\bottomrule"))
-
-
-def test_a_long_table_breaks_over_pages() -> None:
     text = _table([("a", (None, None), None)] * 60)
     assert r"\begin{longtable}{lrr}" in text
     assert text.count(r"a & -- & -- \\") == 60
@@ -76,13 +73,10 @@ def test_numbers_stand_below_each_other_by_their_points() -> None:
     assert r"\begin{tabular}{lr}" in numbers([1.0, 2.0e-7])  # a power of ten stays as it is
 
 
-def test_notes_stand_below() -> None:
+def test_notes_stand_below_and_a_wide_table_lies_across_the_page_and_long_texts_are_broken() -> None:
     text = table_latex(Table("test", "Values.", (Column("a", "A"),), [(1.0,)], note="Said of H_V."))
     assert text.index(r"\end{tabular}") < text.index(r"Said of $H_\mathrm{V}$.") < text.index(r"\end{table}")
     assert text.index(r"\caption") < text.index(r"\begin{tabular}")
-
-
-def test_a_wide_table_lies_across_the_page_and_long_texts_are_broken() -> None:
     columns = tuple(Column(f"c{i}", f"C{i}", "text") for i in range(6))
     text = table_latex(Table("test", "Values.", columns, [("one word after the other, and " * 2,) * 6]))
     assert r"\begin{sidewaystable}" in text

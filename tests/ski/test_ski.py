@@ -38,30 +38,24 @@ def arc_table(radius: float = 14.0, **changes: Any) -> Ski:
     return Ski(**{**tables, **changes})
 
 
-def test_both_radii_of_a_true_arc() -> None:
+def test_both_radii_of_a_true_arc_and_tapered_ski_has_the_depth_of_its_mean_width() -> None:
     ski = arc_table(radius=14.0)
     # interpolated linearly over 2 mm the edge is off by h²/8R = 4e-8 m of a sagitta of 20 mm
     assert ski.sidecut_radius_of_edge_line == pytest.approx(14.0, rel=1e-5)
     # of a circle L²/8δ = R (1 + cos φ)/2 with φ = half the arc: 0.07 % less here
     half_arc = math.asin(0.75 / 14.0)
     assert ski.sidecut_radius_of_three_widths == pytest.approx(14.0 * (1.0 + math.cos(half_arc)) / 2.0, rel=1e-5)
-
-
-def test_tapered_ski_has_the_depth_of_its_mean_width() -> None:
     ski = arc_table(width=0.060 + 0.02 * (STATION / 0.75) ** 2 + 0.004 * STATION / 0.75)
     assert ski.sidecut_widths == pytest.approx((0.084, 0.060, 0.076), abs=1e-6)
     assert ski.sidecut_depth == pytest.approx(0.010, abs=1e-6)
     assert ski.sidecut_radius_of_three_widths == pytest.approx(1.5**2 / 0.080, rel=1e-4)
 
 
-def test_straight_ski_has_no_radius() -> None:
+def test_straight_ski_has_no_radius_and_length_mass_and_torsional_inertia() -> None:
     ski = arc_table(width=np.full(N, 0.062))
     assert ski.sidecut_radius_of_three_widths == math.inf
     assert ski.sidecut_radius_of_edge_line == math.inf
     assert (ski.tip_width, ski.waist_width, ski.tail_width) == (0.062, 0.062, 0.062)
-
-
-def test_length_mass_and_torsional_inertia() -> None:
     ski = arc_table(width=np.full(N, 0.06), mass_per_length=np.linspace(1.0, 2.0, N))
     assert ski.length == pytest.approx(1.6, abs=1e-15)
     assert ski.mass == pytest.approx(1.5 * 1.6, rel=1e-12)  # the trapezoid is exact for a line
@@ -231,20 +225,17 @@ def heights(shape: BaseShape, *stations: float) -> list[float]:
     return [float(h) for h in shape.height_at(np.array(stations), LAYOUT)]
 
 
-def test_camber_shovel_and_tail_heights() -> None:
+def test_camber_shovel_and_tail_heights_and_heights_left_out_are_the_stated_defaults() -> None:
     shape = BaseShape(camber=0.007, shovel_height=0.060, tail_height=0.010)
     boot, front, rear, tip, tail = heights(shape, 0.0, FRONT, REAR, LAYOUT.tip, LAYOUT.tail)
     assert boot == 0.0
     assert (front, rear) == pytest.approx((-0.007, -0.007), abs=1e-15)
     assert (tip - front, tail - rear) == pytest.approx((0.060, 0.010), abs=1e-15)
-
-
-def test_heights_left_out_are_the_stated_defaults() -> None:
     tip, tail = heights(BaseShape(), LAYOUT.tip, LAYOUT.tail)
     assert (tip, tail) == pytest.approx((0.050, 0.008), abs=1e-15)
 
 
-def test_base_has_no_kink_also_with_rocker() -> None:
+def test_base_has_no_kink_also_with_rocker_and_rocker_draws_the_contact_points_in() -> None:
     shape = BaseShape(
         camber=0.005, tip_rocker_length=0.25, tip_rocker_height=0.008, tail_rocker_length=0.1, tail_rocker_height=0.002
     )
@@ -252,9 +243,6 @@ def test_base_has_no_kink_also_with_rocker() -> None:
     slope = np.diff(shape.height_at(station, LAYOUT)) / np.diff(station)
     # the largest curvature is that of the shovel, below 10 per metre: in steps of 0.016 mm the slope changes by 2e-4
     assert np.max(np.abs(np.diff(slope))) < 2e-4
-
-
-def test_rocker_draws_the_contact_points_in() -> None:
     shape = BaseShape(camber=0.004, tip_rocker_length=0.2, tip_rocker_height=0.010)
     lowest, end = heights(shape, FRONT - 0.2, FRONT)
     assert end - lowest == pytest.approx(0.010, abs=1e-15)

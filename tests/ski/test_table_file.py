@@ -39,7 +39,7 @@ def with_table(ski_file: Written) -> Callable[..., Path]:
     return written
 
 
-def test_the_rows_are_in_the_ski(with_table: Written) -> None:
+def test_the_rows_are_in_the_ski_and_a_dense_table_keeps_its_own_stations(with_table: Written) -> None:
     ski = read_ski(with_table())
     at = ski.at([0.8, 0.4, 0.0, -0.4, -0.8])
     assert at.width * 1e3 == pytest.approx([110, 80, 68, 78, 100], abs=1e-9)
@@ -49,9 +49,6 @@ def test_the_rows_are_in_the_ski(with_table: Written) -> None:
     assert ski.mass == pytest.approx(2.4, rel=0.02)  # the cubic between the rows is no trapezoid
     assert ski.length == pytest.approx(1.6)
     assert np.max(-np.diff(ski.station)) <= 2.5e-3 + 1e-12
-
-
-def test_a_dense_table_keeps_its_own_stations(with_table: Written) -> None:
     stations = np.linspace(0.8, -0.8, 801)
     rows = [f"{s:.6f},{68 + 60 * s**2:.6f},0,300,100,1.5" for s in stations]
     ski = read_ski(with_table("\n".join([ROWS.splitlines()[0], *rows])))

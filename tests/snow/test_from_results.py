@@ -174,7 +174,7 @@ SNOW = SnowProperties(
 )
 
 
-def test_the_intervals_come_back() -> None:
+def test_the_intervals_come_back_and_a_share_of_one_half_is_the_middle_and_more_is_more() -> None:
     """Of 40,000 draws: the 2.5 % quantile of a normal is known to 0.7 % of its half-width (1.96 × 0.0134 × 0.27)."""
     snows = drawn_snows(SNOW, np.random.default_rng(1).random((40_000, 2)))
     hardness = np.array([snow.snow_hardness for snow in snows])
@@ -183,9 +183,6 @@ def test_the_intervals_come_back() -> None:
     assert np.quantile(stress, [0.025, 0.5, 0.975]) == pytest.approx([1.0e5, np.sqrt(1.8) * 1e5, 1.8e5], rel=0.02)
     assert abs(np.corrcoef(np.log(hardness), np.log(stress))[0, 1]) < 0.02
     assert "site X" in snows[0].source
-
-
-def test_a_share_of_one_half_is_the_middle_and_more_is_more() -> None:
     low, middle, high = drawn_snows(SNOW, np.array([[0.025, 0.025], [0.5, 0.5], [0.975, 0.975]]))
     assert middle.snow_hardness == pytest.approx(2.0e8)
     assert middle.failure_shear_stress == pytest.approx(np.sqrt(1.0e5 * 1.8e5), rel=1e-6)

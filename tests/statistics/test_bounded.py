@@ -83,17 +83,12 @@ def assert_conditions(A: FloatArray, y: FloatArray, beta: FloatArray) -> None:
 
 
 @given(small_problems())
-def test_conditions_of_the_solution(case: tuple[FloatArray, FloatArray]) -> None:
+def test_conditions_of_the_solution_and_conditions_of_a_batch(case: tuple[FloatArray, FloatArray]) -> None:
     A, y = case
     fit = BoundedFit(A, y)
     assert_conditions(A, y, fit.coefficients)
     assert fit.rank == np.linalg.matrix_rank(A)
     assert np.sum(~fit.at_bound) <= fit.rank
-
-
-@given(small_problems())
-def test_conditions_of_a_batch(case: tuple[FloatArray, FloatArray]) -> None:
-    A, y = case
     beta = non_negative_fits((A.T @ A)[None], (A.T @ y)[None])[0]
     assert_conditions(A, y, beta)
     assert np.sum(beta > 0) <= np.linalg.matrix_rank(A)

@@ -11,7 +11,7 @@ from skisnow.statistics.combined_uncertainty import random_effects_mean
 from ..versions import EXACT_QUANTILES
 
 
-def test_against_statsmodels() -> None:
+def test_against_statsmodels_and_two_numerator_degrees_of_freedom_have_an_elementary_p() -> None:
     from statsmodels.api import OLS
 
     rng = np.random.default_rng(2)
@@ -21,10 +21,6 @@ def test_against_statsmodels() -> None:
     F, p, df1 = full.compare_f_test(reduced)
     test = nested_f_test(full.ssr, reduced.ssr, n=50, n_parameters_full=4, n_parameters_reduced=2)
     np.testing.assert_allclose([test.F, test.p, test.df1, test.df2], [F, p, df1, 46], rtol=1e-12)
-
-
-def test_two_numerator_degrees_of_freedom_have_an_elementary_p() -> None:
-    # P(F(2, m) > F) = (1 + 2 F/m)^(-m/2)
     test = nested_f_test(10.0, 14.0, n=24, n_parameters_full=4, n_parameters_reduced=2)
     np.testing.assert_allclose(test.F, 4.0, rtol=1e-14)
     assert test.p == pytest.approx((1 + 8 / 20) ** -10, rel=1e-12)
@@ -112,13 +108,10 @@ def test_estimates_that_agree_better_than_their_errors_have_no_spread() -> None:
     assert random_effects_mean([0.0, 1.5], [1.0, 1.0]).spread ** 2 == pytest.approx(0.125)
 
 
-def test_one_estimate_has_no_interval() -> None:
+def test_one_estimate_has_no_interval_and_exact_estimates_do_not_divide_by_zero() -> None:
     found = random_effects_mean([3.0], [0.1])
     assert found.mean == 3.0
     assert np.isnan([found.low, found.high]).all()
-
-
-def test_exact_estimates_do_not_divide_by_zero() -> None:
     found = random_effects_mean([2.0, 2.0, 2.0], [0.0, 0.0, 0.0])
     assert (found.mean, found.low, found.high) == pytest.approx((2.0, 2.0, 2.0))
     assert random_effects_mean([0.0, 0.0], [0.0, 0.0]).mean == 0.0

@@ -45,7 +45,7 @@ def test_line_by_hand() -> None:
     assert (fit.n, fit.n_parameters, fit.rank) == (4, 2, 2)
 
 
-def test_against_statsmodels_with_two_predictors_and_another_confidence() -> None:
+def test_against_statsmodels_with_two_predictors_and_another_confidence_and_without_intercept() -> None:
     from statsmodels.api import OLS, add_constant
 
     rng = np.random.default_rng(7)
@@ -56,10 +56,6 @@ def test_against_statsmodels_with_two_predictors_and_another_confidence() -> Non
     np.testing.assert_allclose(fit.standard_errors, peer.bse, rtol=1e-9)
     np.testing.assert_allclose(fit.intervals, peer.conf_int(alpha=0.1), rtol=1e-8)
     np.testing.assert_allclose([fit.r2, fit.F, fit.p], [peer.rsquared, peer.fvalue, peer.f_pvalue], rtol=1e-8)
-
-
-def test_without_intercept() -> None:
-    # through the origin: b = Σxy/Σx² = 14/14, residuals 1, 1, -1
     fit = linear_fit([2.0, 3.0, 2.0], [1.0, 2.0, 3.0], intercept=False)
     np.testing.assert_allclose(
         [fit.coefficients[0], fit.sse, fit.standard_errors[0] ** 2], [1.0, 3.0, 1.5 / 14], rtol=1e-13
@@ -67,23 +63,17 @@ def test_without_intercept() -> None:
     assert np.isnan([fit.r2, fit.F, fit.p]).all()
 
 
-def test_as_many_coefficients_as_observations() -> None:
+def test_as_many_coefficients_as_observations_and_mean_alone_and_perfect_and_constant_responses() -> None:
     fit = linear_fit([1.0, 3.0], [0.0, 2.0])
     np.testing.assert_allclose(fit.coefficients, [1.0, 1.0], rtol=1e-14)
     assert np.isnan(fit.intervals).all()
     assert np.isnan(fit.standard_errors).all()
     assert np.isnan([fit.rmse_dof, fit.F, fit.p]).all()
     assert fit.sse < 1e-28
-
-
-def test_mean_alone() -> None:
     fit = linear_fit([1.0, 2.0, 6.0], np.empty((3, 0)))
     assert fit.coefficients.tolist() == [3.0]
     np.testing.assert_allclose(fit.standard_errors[0] ** 2, 7 / 3, rtol=1e-14)
     assert np.isnan([fit.F, fit.p]).all()
-
-
-def test_perfect_and_constant_responses() -> None:
     perfect = linear_fit([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])
     assert perfect.r2 == 1.0
     assert perfect.p < 1e-10
@@ -194,11 +184,8 @@ def test_intervals_hold_the_share_nineteen_times_in_twenty() -> None:
     assert inside >= 276  # of 300 with 95 %: 276 or more in 99 of 100 such tests
 
 
-def test_an_output_that_does_not_vary_has_no_shares() -> None:
+def test_an_output_that_does_not_vary_has_no_shares_and_an_input_that_does_not_vary_is_rejected() -> None:
     found = variance_shares(np.ones(5), np.random.default_rng(3).random((5, 2)))
     assert (found.share.tolist(), found.left) == ([0.0, 0.0], 0.0)
-
-
-def test_an_input_that_does_not_vary_is_rejected() -> None:
     with pytest.raises(FitError):
         variance_shares([1.0, 2.0, 4.0], [[1.0], [1.0], [1.0]])

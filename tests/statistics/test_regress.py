@@ -87,7 +87,7 @@ def test_no_constant_is_warned_of_and_an_implied_one_is_not() -> None:
     np.testing.assert_allclose(groups.stats.F, 4.5, rtol=1e-12)  # the analysis of variance of the two groups
 
 
-def test_dependent_columns_get_zero_with_a_warning() -> None:
+def test_dependent_columns_get_zero_with_a_warning_and_of_two_columns_of_ones_the_first_counts() -> None:
     X = np.column_stack((DESIGN[:, :2], 2 * DESIGN[:, 1]))
     with warns(FitWarning, "rank_deficient", rank=2):
         found = regress(Y, X)
@@ -95,24 +95,18 @@ def test_dependent_columns_get_zero_with_a_warning() -> None:
     assert np.sum(found.b == 0) == 1
     np.testing.assert_allclose(Y - X @ found.b, plain.r, atol=1e-12)
     np.testing.assert_allclose(found.stats, plain.stats, rtol=1e-10)
-
-
-def test_of_two_columns_of_ones_the_first_counts() -> None:
-    """The design of `test_the_published_vector_exactly` with ones on both sides: the same b, and 0 for the rest."""
+    # The design of `test_the_published_vector_exactly` with ones on both sides: the same b, and 0 for the rest.
     with warns(FitWarning, "rank_deficient", count=4, rank=3):
         found = regress(Y, np.column_stack((DESIGN, np.ones(4))))
     np.testing.assert_allclose(found.b, [23 / 6, 5 / 6, 17 / 6, 0.0], rtol=1e-12, atol=1e-12)
 
 
-def test_nothing_left_to_judge_by() -> None:
+def test_nothing_left_to_judge_by_and_the_constant_alone() -> None:
     found = regress([1.0, 3.0], [[1, 0], [1, 2]])
     np.testing.assert_allclose(found.b, [1, 1], rtol=1e-13)
     assert np.isnan(found.bint).all()
     assert np.isnan(found.rint).all()
     assert np.isnan(found.stats[1:]).all()
-
-
-def test_the_constant_alone() -> None:
     found = regress([1.0, 2.0, 6.0], [1.0, 1.0, 1.0])
     np.testing.assert_allclose(found.b, [3.0], rtol=1e-14)
     assert found.stats.r2 == pytest.approx(0.0, abs=1e-15)
@@ -145,7 +139,7 @@ def test_counts_do_not_depend_on_the_chunk(n_units: int, chunk: int) -> None:
     assert whole.dtype == np.float64
 
 
-def test_counts_are_multinomial() -> None:
+def test_counts_are_multinomial_and_many_units_come_in_small_parts() -> None:
     n, B = 20, 40_000
     counts = np.vstack(list(resampling_counts(n, B, np.random.default_rng(4))))
     assert (counts.min(), set(counts.sum(axis=1))) == (0.0, {n})
@@ -157,9 +151,6 @@ def test_counts_are_multinomial() -> None:
     # a unit is left out with probability (1 - 1/n)^n
     q = (1 - 1 / n) ** n
     assert abs(float(np.mean(counts == 0)) - q) < 5 * np.sqrt(q * (1 - q) / B)
-
-
-def test_many_units_come_in_small_parts() -> None:
     parts = resampling_counts(150_000, 3, np.random.default_rng(1))
     sizes = [part.nbytes for part in parts]
     assert sizes == [150_000 * 8] * 3
@@ -171,14 +162,11 @@ def test_bad_sizes(n_units: int, n_resamples: int, chunk: int | None) -> None:
         resampling_counts(n_units, n_resamples, np.random.default_rng(1), chunk=chunk)
 
 
-def test_percentiles_of_an_even_row() -> None:
+def test_percentiles_of_an_even_row_and_nan_is_not_forgotten() -> None:
     samples = np.random.default_rng(1).permutation(np.arange(1001.0))
     np.testing.assert_allclose(percentile_interval(samples), [25, 975], rtol=1e-13)
     shaped = percentile_interval(np.stack((samples, -2 * samples), axis=1)[:, None, :], confidence=0.8)
     np.testing.assert_allclose(shaped, [[[100, 900], [-1800, -200]]], rtol=1e-13)
-
-
-def test_nan_is_not_forgotten() -> None:
     samples = np.ones((5, 2))
     samples[3, 1] = np.nan
     assert percentile_interval(samples)[0].tolist() == [1.0, 1.0]
@@ -216,7 +204,7 @@ def test_parameters_of_drawn_shot_noise(force: float, deflection: float, intensi
     assert float(found.intensity) == pytest.approx(intensity, rel=0.1)
 
 
-def test_force_and_length_have_their_scales() -> None:
+def test_force_and_length_have_their_scales_and_a_line_beneath_does_not_lengthen_the_deflection() -> None:
     """Twice the force: twice f₀ alone. Twice the distance between samples: twice δ, half λ."""
     drawn = saw_teeth(0.02, 1e-4, 4e5, 0.01, seed=1)
     one, stronger, longer = shot_noise(drawn, STEP), shot_noise(2 * drawn, STEP), shot_noise(drawn, 2 * STEP)
@@ -224,11 +212,7 @@ def test_force_and_length_have_their_scales() -> None:
         [stronger.rupture_force / one.rupture_force, stronger.deflection / one.deflection], [2, 1]
     )
     np.testing.assert_allclose([longer.deflection / one.deflection, longer.intensity / one.intensity], [2, 0.5])
-
-
-def test_a_line_beneath_does_not_lengthen_the_deflection() -> None:
-    """A layer that grows harder: without the line taken off, δ would be several times as long."""
-    drawn = saw_teeth(0.02, 1e-4, 4e5, 0.01, seed=1)
+    # A layer that grows harder: without the line taken off, δ would be several times as long.
     slope = np.linspace(0.0, 5.0, len(drawn))
     np.testing.assert_allclose(shot_noise(drawn + slope, STEP).deflection, shot_noise(drawn, STEP).deflection)
 

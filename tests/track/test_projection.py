@@ -126,12 +126,9 @@ def test_straight_down_a_slope_that_falls_to_the_east() -> None:
     np.testing.assert_array_equal(turned.speed, down.speed)
 
 
-def test_profile_keeps_height_and_horizontal_distance() -> None:
+def test_profile_keeps_height_and_horizontal_distance_and_origin_is_where_x_begins() -> None:
     turned = in_slope_frame(track([[3.0, 4.0, -2.0]]), fall_line_azimuth=0.0, slope_angle=None)
     np.testing.assert_allclose(turned.place, [[4.0, -3.0, -2.0]], atol=1e-15)
-
-
-def test_origin_is_where_x_begins() -> None:
     turned = in_slope_frame(
         track([[13.0, 4.0, -2.0]]), fall_line_azimuth=math.pi / 2, slope_angle=None, origin=(10.0, 5.0, 1.0)
     )

@@ -74,14 +74,11 @@ def test_day_of_runs(recorded: bool, n_runs: int, share: float, monkeypatch: pyt
         assert lift.descent == pytest.approx(-150.0 * share, abs=12.0)
 
 
-def test_rest_on_the_slope_does_not_end_a_run() -> None:
+def test_rest_on_the_slope_does_not_end_a_run_and_hump_that_speed_carries_over_is_no_lift() -> None:
     found = split(day([LIFT, REST, RUN, REST, REST, RUN._replace(duration=50), QUEUE]))
     assert len(found.runs) == 1
     assert found.runs[0].end - found.runs[0].start == pytest.approx(270.0, abs=3.0)
-
-
-def test_hump_that_speed_carries_over_is_no_lift() -> None:
-    """At 20 m/s one rolls 20.4 m up."""
+    # At 20 m/s one rolls 20.4 m up.
     fast = Leg(30, 20.0, -3.0)
     hump = Leg(10, 18.0, 1.8)
     found = split(day([LIFT, REST, fast, hump, fast, QUEUE]))
@@ -90,7 +87,7 @@ def test_hump_that_speed_carries_over_is_no_lift() -> None:
     assert len(split(day([LIFT, REST, RUN, slow, REST, RUN, QUEUE])).runs) == 2
 
 
-def test_short_run_is_one_run() -> None:
+def test_short_run_is_one_run_and_single_steep_run_without_a_lift_is_whole() -> None:
     whole = day([Leg(50, 0.8, -0.1)], height_noise=0.01)
     short = replace(whole, time=0.1 * whole.time, speed=10.0 * whole.speed)
     found = split(short)
@@ -100,9 +97,6 @@ def test_short_run_is_one_run() -> None:
     assert run.distance == pytest.approx(40.0, rel=0.01)
     assert run.descent == pytest.approx(5.0, abs=0.1)
     assert found.lifts == ()
-
-
-def test_single_steep_run_without_a_lift_is_whole() -> None:
     found = split(day([Leg(40, 12.0, -3.0)]))
     (run,) = found.runs
     assert (run.start, run.end) == (0.0, 40.0)
@@ -200,14 +194,11 @@ def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
         assert turn.mean_radius == pytest.approx(15.0 / 0.7958, rel=0.05)
 
 
-def test_straight_line_has_no_turn() -> None:
+def test_straight_line_has_no_turn_and_wiggle_below_ten_degrees_does_not_part_a_turn() -> None:
     straight = np.stack([np.arange(100.0), np.zeros(100)], axis=1)
     for seed in range(2):
         assert find_turns(track_motion(track(straight, noise=NOISE, seed=seed))) == ()
-
-
-def test_wiggle_below_ten_degrees_does_not_part_a_turn() -> None:
-    """Left 20 m, right 1.5 m by 4°, left 20 m: one turn, and two where 3° make one."""
+    # Left 20 m, right 1.5 m by 4°, left 20 m: one turn, and two where 3° make one.
     curvature = np.full(round(41.5 / STEP) + 1, 1.0 / 20.0)
     curvature[round(20.0 / STEP) : round(21.5 / STEP)] = -4.0 * DEGREE / 1.5
     motion = track_motion(track(along(curvature, STEP)[::10], interval=0.01), window=0.06)

@@ -247,7 +247,7 @@ def test_whole_number_beyond_those_of_toml(digits: int, row: int | None) -> None
     assert (problem.code, problem.row) == ("bad_toml", row)
 
 
-def test_other_unknown_keys_are_warned_of(schema: Any) -> None:
+def test_other_unknown_keys_are_warned_of_and_all_keys_are_optional(schema: Any) -> None:
     text = f"altitude = 'sunny'\n{SKI}colour = 'red'\n[screening]\nwho = 'me'\n"
     _, found = read(text)
     assert [(each.severity, each.code, each.column) for each in found] == [
@@ -256,9 +256,6 @@ def test_other_unknown_keys_are_warned_of(schema: Any) -> None:
         ("warning", "unknown_column", "screening.who"),
     ]
     jsonschema.validate(tomllib.loads(text), schema)
-
-
-def test_all_keys_are_optional(schema: Any) -> None:
     described, found = read("")
     assert found == []
     assert described is not None

@@ -52,13 +52,10 @@ def test_an_experiment_that_is_reported_in_two_places(small: SmallCampaign) -> N
     assert "row 2" in problem.allowed
 
 
-def test_the_spot_may_be_in_any_row(small: SmallCampaign) -> None:
+def test_the_spot_may_be_in_any_row_and_samples_of_one_name_are_fine(small: SmallCampaign) -> None:
     small[PEN] = small[PEN].replace("1.25,a", "1.25,").replace("3.75,a", "3.75,")
     tests = present(small.read().penetration)
     assert tests.spot == ("a", "")
-
-
-def test_samples_of_one_name_are_fine(small: SmallCampaign) -> None:
     small.replace(DENSITY, "D2", "D1")
     assert small.check() == ()
 

@@ -120,16 +120,13 @@ def test_layering_bends_the_law_and_keeps_its_end() -> None:
     assert abs(drawn.layering.std() - 0.15) < 0.028
 
 
-def test_seating_is_what_the_gauge_reads_too_much() -> None:
+def test_seating_is_what_the_gauge_reads_too_much_and_depth_scatter_is_relative_and_independent() -> None:
     drawn = reference_campaign(7, noise=dataclasses.replace(QUIET, seating_sd=2e-5))
     reading = drawn.penetration.penetration_depth
     expected = drawn.penetration_depth + np.repeat(drawn.seating_offset, 7)
     np.testing.assert_allclose(reading, np.maximum(expected, 0.0), rtol=0, atol=1e-15)
     assert (expected < 0).any()  # so that the gauge's zero was met
     assert abs(drawn.seating_offset.std() - 2e-5) < 4 * 2e-5 / np.sqrt(472)
-
-
-def test_depth_scatter_is_relative_and_independent() -> None:
     drawn = reference_campaign(7, noise=dataclasses.replace(QUIET, depth_scatter=0.02))
     relative = drawn.penetration.penetration_depth / drawn.penetration_depth - 1.0
     assert abs(relative.std() - 0.02) < 4 * 0.02 / np.sqrt(2 * 1652)

@@ -258,7 +258,7 @@ def test_the_general_law_contains_its_rivals(depth: float, angle: float) -> None
         )
 
 
-def test_bilinear_force_is_the_integral_of_its_stress() -> None:
+def test_bilinear_force_is_the_integral_of_its_stress_and_bilinear_rejects_snow_that_pulls() -> None:
     """Eqn 5: ∫ H (a + b ε) dA over the base, point by point, past the upper edge of the base too."""
     law = BilinearLaw(0.2e9, 1e-3, 2e-4, 0.9, 0.1)
     for depth in (0.01, 0.06):
@@ -269,9 +269,6 @@ def test_bilinear_force_is_the_integral_of_its_stress() -> None:
         whole = float(np.sum(np.where(below > 0, stress, 0.0))) * element
         # a strip at the rim of the contact is in or out as a whole
         assert float(law.reaction_force(SKI, depth, EDGED)) == pytest.approx(whole, rel=2e-5)
-
-
-def test_bilinear_rejects_snow_that_pulls() -> None:
     law = BilinearLaw(0.2e9, 0.0, 0.0, 0.5, -0.6)
     assert float(law.reaction_force(SKI, 0.01, 0.8)) > 0
     with raises(ParameterError, "out_of_range", name="b", at_zero=0.5, slope=-0.6, worst=0.9):
@@ -311,16 +308,13 @@ def test_federolf_flat_starts_with_a_jump() -> None:
     assert force == pytest.approx([0.0, 0.1e6 * 0.2 * 0.062, 0.1e6 * 0.2 * 0.062])
 
 
-def test_counting_elements_is_the_volume_law() -> None:
+def test_counting_elements_is_the_volume_law_and_any_tool_will_do() -> None:
     law = ElementCountLaw(elements_per_volume=5e9, force_per_element=0.04)
     depth = np.linspace(0.0, 0.06, 30)
     np.testing.assert_allclose(
         law.reaction_force(SKI, depth, EDGED), VolumeLaw(law.snow_hardness).reaction_force(SKI, depth, EDGED)
     )
     assert law.snow_hardness == pytest.approx(0.2e9)
-
-
-def test_any_tool_will_do() -> None:
     assert float(VolumeLaw(0.2e9).reaction_force(PlainWedge(0.2, 0.062), 0.01, EDGED)) == pytest.approx(2000.0)
 
 

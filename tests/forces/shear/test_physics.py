@@ -252,7 +252,7 @@ def test_machining_has_no_shear_plane_below_the_friction_angle() -> None:
     assert np.isnan(force).tolist() == [True, True, False]
 
 
-def test_ice_scaled_by_0_02() -> None:
+def test_ice_scaled_by_0_02_and_ice_coefficients_that_pull_are_rejected() -> None:
     """By hand at 0.5 mm and 60°: γ = -π/6; (8 + 2·π/6 + 1·0.5) N/mm² · 0.5 mm · 0.02."""
     law = IceCuttingShear(((8e6, -2e6), (1e9, 0.0)))
     expected = (8.0 + math.pi / 3 + 0.5) * 0.5 * 0.02 * 1000.0
@@ -260,9 +260,6 @@ def test_ice_scaled_by_0_02() -> None:
     assert force == pytest.approx(expected)
     # normal to the cutting face: upright it pushes sideways only
     assert float(law.thrust_force(0.5e-3, 1.0, math.radians(60.0))) == pytest.approx(force / math.tan(math.pi / 3))
-
-
-def test_ice_coefficients_that_pull_are_rejected() -> None:
     law = IceCuttingShear(((1e6, 2e6),))
     assert float(law.failure_force(0.5e-3, 1.0, math.radians(75.0))) > 0
     with raises(ParameterError, "negative_force", depth=0.0005):

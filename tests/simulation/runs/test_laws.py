@@ -194,7 +194,7 @@ def test_groove_is_paid_for_once() -> None:
     assert present(run.energy_balance_error) < 1e-4
 
 
-def test_it_stands_deeper_in_the_groove_than_in_virgin_snow() -> None:
+def test_it_stands_deeper_in_the_groove_than_in_virgin_snow_and_a_track_counts_once() -> None:
     """The groove was cut by the shovel's load; on the way back it bears the even load without sinking further."""
     run = up_and_back(10.0)
     x = run.place[:, 0]
@@ -204,14 +204,9 @@ def test_it_stands_deeper_in_the_groove_than_in_virgin_snow() -> None:
     cut = float(np.median(run.groove.depth))
     assert up < down < cut
     assert down == pytest.approx(cut, rel=0.02)
-
-
-def test_a_track_counts_once() -> None:
-    """All energy in the snow at the end, piece by piece of every 24 mm, does not exceed what was taken from the motion.
-
-    On the way up pieces are archived; the way back takes them over and archives them again.
-    Counted twice, the loss would double.
-    """
+    # All energy in the snow at the end, piece by piece of every 24 mm, does not exceed what was taken from the motion.
+    # On the way up pieces are archived; the way back takes them over and archives them again.
+    # Counted twice, the loss would double.
     run, half = up_and_back(10.0), up_and_back(10.0, duration=1.7)
     assert run.energies["penetration"][-1] == pytest.approx(half.energies["penetration"][-1], rel=0.1)
 

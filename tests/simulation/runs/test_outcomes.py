@@ -55,7 +55,7 @@ def test_distance_reached(length: float) -> None:
     assert is_sound(run)
 
 
-def test_end_of_slope() -> None:
+def test_end_of_slope_and_tipped_over() -> None:
     """A straight ramp of 12 m: the tips, 0.8 m before the boots, reach its end within one output's way."""
     x = np.arange(0.0, 12.01, 0.5)
     run = simulate(flat_scenario(Profile(x, -0.17 * x), speed=5.0, x=1.0))
@@ -63,9 +63,6 @@ def test_end_of_slope() -> None:
     tip = run.place[-1, 0] + 0.8 * run.attitude[-1, 0, 0]
     assert 12.0 < tip < 12.0 + 0.011 * run.speed[-1]
     assert is_sound(run)
-
-
-def test_tipped_over() -> None:
     run = simulate(load_scenario("carved-46m", changes={"sledge.centre_of_mass_height_m": 0.6}))
     assert run.outcome == "tipped_over"
     assert run.attitude[-1, 2, 2] == pytest.approx(0.5, abs=0.1)  # the cosine of 60°

@@ -163,15 +163,12 @@ def climbing(pause: float) -> MovingPoint:
     return MovingPoint(times, corners, velocity=np.zeros((5, 2)))
 
 
-def test_a_gate_passed_after_climbing_back_counts_later() -> None:
+def test_a_gate_passed_after_climbing_back_counts_later_and_gates_are_passed_in_their_order() -> None:
     result = passages(WIDE, climbing(6.0), {})
     assert result.passages[0].outcome == "passed"
     assert present(result.passages[0].time) > 1.7 + 6.0 + 3.0
     assert passages(WIDE, climbing(130.0), {}).passages[0].outcome == "missed"
-
-
-def test_gates_are_passed_in_their_order() -> None:
-    """Who goes through gate 3 first and then back to the start, far beside the course, has not passed it yet."""
+    # Who goes through gate 3 first and then back to the start, far beside the course, has not passed it yet.
     corners = [(25.0, 0.0), (32.0, 0.0), (32.0, -90.0), (-5.0, -90.0), (-5.0, 0.0), (45.0, 0.0)]
     track = MovingPoint(np.array([0.0, 1.0, 10.0, 15.0, 24.0, 29.0]), np.array(corners), np.zeros((6, 2)))
     result = passages(WIDE, track, {})

@@ -274,16 +274,13 @@ def test_stamps_that_are_not_rounded_stay() -> None:
         assert not moved.any()
 
 
-def test_points_recorded_twice_stay() -> None:
+def test_points_recorded_twice_stay_and_standing_still_stays() -> None:
     time = np.repeat(np.arange(50.0), 2)
     found, moved = spread_times(time, straight(time))
     np.testing.assert_array_equal(found, time)
     assert not moved.any()
     nearby = straight(time) + np.tile([[0.0, 0.0], [1.0, 0.0]], (50, 1))  # two receivers 1 m apart
     assert not spread_times(time, nearby)[1].any()
-
-
-def test_standing_still_stays() -> None:
     time = np.repeat(np.arange(10.0), 5)
     assert not spread_times(time, np.zeros((50, 2)))[1].any()
 
