@@ -82,7 +82,7 @@ intervals = st.builds(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(intervals)
 def test_force_and_moment_are_the_integrals_of_the_point_law(interval: Interval) -> None:
     end = interval.start + interval.length
@@ -96,7 +96,7 @@ def test_force_and_moment_are_the_integrals_of_the_point_law(interval: Interval)
     assert found[1] == pytest.approx(moment, rel=1e-8, abs=1e-6)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(intervals)
 def test_derivatives_are_differences(interval: Interval) -> None:
     """By a shift of depth or groove, and by a tilt of both about ξ = 0: the sums with ξ⁰, ξ¹, ξ²."""

@@ -217,8 +217,9 @@ def test_the_state_of_a_sledge_as_bytes_serves_another_instance(sledge: Fmu) -> 
     other.begin(1.0, {"start.speed": 6.0})
 
 
-def test_the_state_of_a_contact_as_bytes_serves_another_instance_over_older_tracks(pair: Fmu) -> None:
+def test_the_state_of_a_contact_as_bytes_serves_another_instance_over_older_tracks(made: Made) -> None:
     """Ahead for 2.4 m, then turned by 90° and across the two tracks that were left, 600 steps of 3 mm."""
+    pair = made("pair", 3)
     outputs = [f"{side}.{what}[{i}]" for side in ("left", "right") for what in ("force", "moment") for i in (1, 2, 3)]
     instance, other, dt = pair.instance(), pair.instance(), 2.5e-4
     level = poses(pair, 0)
