@@ -99,14 +99,11 @@ def test_snow_of_a_site_is_that_of_results_json(analysis: Analysis, tmp_path: Pa
     assert replace(analysis.snow("C", unloading_ratio=3.0), unloading_ratio=None) == analysis.snow("site C")
 
 
-def test_snow_of_a_site_by_hand(analysis: Analysis) -> None:
+def test_snow_of_a_site_by_hand_and_an_unknown_site_is_rejected_with_those_that_there_are(analysis: Analysis) -> None:
     tests, found = analysis.campaign.penetration, analysis.penetration
     mine = present(found).screened.used & (np.array(present(tests).site) == "site C")
     by_hand = math.exp(float(np.mean(np.log(present(found).hardness["H_V"].value[mine]))))
     assert analysis.snow("C").snow_hardness == pytest.approx(by_hand, rel=1e-12)
-
-
-def test_an_unknown_site_is_rejected_with_those_that_there_are(analysis: Analysis) -> None:
     with pytest.raises(ParameterError, match=r"'Z'; .*'site A', .*C'"):
         analysis.snow("Z")
     with pytest.raises(ParameterError, match=r"unloading_ratio is 0\.5"):

@@ -54,7 +54,7 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "station.smet"
 
 
-def test_values_are_si_and_times_utc_and_capitals_do_not_matter(path: Path) -> None:
+def test_values_are_si_and_times_utc_and_capitals_do_not_matter_and_a_byte_order_mark_of_utf_16(path: Path) -> None:
     path.write_text(HEAD + ROWS)
     series = read_smet(path)
     assert (series.station, series.altitude, series.utc_offset) == ("Weissfluhjoch: snow", 2540.0, 1.0)
@@ -65,9 +65,6 @@ def test_values_are_si_and_times_utc_and_capitals_do_not_matter(path: Path) -> N
     assert "3 rows, 2026-02-03 07:00 to 2026-02-03 13:00 UTC" in repr(series)
     path.write_text(HEAD.replace("timestamp TA RH VW", "Timestamp ta Rh vw") + ROWS)
     assert list(read_smet(path).fields) == ["TA", "RH", "VW"]
-
-
-def test_a_byte_order_mark_of_utf_16(path: Path) -> None:
     path.write_text(HEAD + ROWS, encoding="utf-16")
     assert list(read_smet(path).fields) == ["TA", "RH", "VW"]
 

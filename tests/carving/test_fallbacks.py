@@ -135,7 +135,7 @@ def test_the_loads_before_and_behind_the_boot_are_sums_over_the_stations() -> No
     assert found.bearing_length == pytest.approx(float(weight[force > 0.0].sum()), rel=1e-12)
 
 
-def test_a_laws_search_begins_at_its_own_hardness() -> None:
+def test_a_laws_search_begins_at_its_own_hardness_and_a_search_begins_where_a_straight_edge_bears_the_load() -> None:
     """Linear snow: the same H_V and k_u under any straight edge, and never steeper than 1000."""
     ski = plain_ski()
     for angle in (0.0, 0.5, 1.2):
@@ -143,13 +143,8 @@ def test_a_laws_search_begins_at_its_own_hardness() -> None:
             hardness, found = equivalent_snow(HypoplasticPoint(HARDNESS, ratio), ski, angle, 800.0)
             assert (hardness, found) == pytest.approx((HARDNESS, ratio), rel=1e-6)
         assert equivalent_snow(HypoplasticPoint(HARDNESS, 1e5), ski, angle, 800.0)[1] == 1000.0
-
-
-def test_a_search_begins_where_a_straight_edge_bears_the_load() -> None:
-    """p = a ε² under an edge at 45°: F = a e³ L/3 over 0.9 of the running length; linear snow bears as much at e.
-
-    Depths are tried that are 2.34 % apart; the first that bears is taken. Unloading is four times the chord.
-    """
+    # p = a ε² under an edge at 45°: F = a e³ L/3 over 0.9 of the running length; linear snow bears as much at e.
+    # Depths are tried that are 2.34 % apart; the first that bears is taken. Unloading is four times the chord.
     law, ski = Power(4e10, 2.0, unloading_ratio=4.0), plain_ski()
     depth = (3.0 * 800.0 / (4e10 * 0.9 * 1.6)) ** (1.0 / 3.0)
     hardness, ratio = equivalent_snow(law, ski, math.radians(45.0), 800.0)

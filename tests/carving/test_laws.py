@@ -292,7 +292,7 @@ def richardson(model: ClampedSki, given: Conditions, name: str, step: float) -> 
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
-def test_the_gradient_is_that_of_differences(case: dict[str, Any]) -> None:
+def test_the_gradient_is_that_of_differences_and_the_last_correction_is_rounding(case: dict[str, Any]) -> None:
     """By each number of the equations. A number that is 0 and cannot fall is left out."""
     model, given = model_and_conditions(**case)
     point = refined(model, given, solved(model, given))
@@ -308,11 +308,6 @@ def test_the_gradient_is_that_of_differences(case: dict[str, Any]) -> None:
         differences = richardson(model, given, name, (1e-5 if name == "side_force" else 1e-4) * scale)
         room = 1e-6 * np.maximum(np.abs(differences), size / scale)
         assert np.all(np.abs(gradients[:, column] - differences) <= room), name
-
-
-@pytest.mark.parametrize("case", CASES, ids=str)
-def test_the_last_correction_is_rounding(case: dict[str, Any]) -> None:
-    model, given = model_and_conditions(**case)
     assert refined(model, given, solved(model, given)).state()[0] <= 1e-15  # m
 
 

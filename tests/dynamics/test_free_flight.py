@@ -34,7 +34,7 @@ def flown(body: Body, velocity: FloatArray, control: StepControl, duration: floa
     return dynamics
 
 
-def test_parabola() -> None:
+def test_parabola_and_energy_of_a_fall() -> None:
     """All falls alike, nothing bends. BDF2 is exact but for the first step: Euler's puts ½ g h² too much into the
     place, of which each later increment keeps a third: ½ (1 + 1/3 + 1/9 + …) = ¾."""
     body = replace(body_of(SCENARIO), drag=0.0)
@@ -46,10 +46,7 @@ def test_parabola() -> None:
         assert flight.position == pytest.approx(known + 0.75 * body.gravity * step**2, abs=1e-12)
         assert flight.rotation @ flight.velocity[:3] == pytest.approx(v + body.gravity * DURATION, abs=1e-11)
         assert np.abs(flight.beam_dofs).max() < 1e-12
-
-
-def test_energy_of_a_fall() -> None:
-    """What is lost in height is gained in speed; drag is accounted for."""
+    # What is lost in height is gained in speed; drag is accounted for.
     body = body_of(SCENARIO)
     start = sledge(SCENARIO, body=body, height=HEIGHT)
     velocity = np.concatenate([MOVES, np.zeros(3)])

@@ -158,7 +158,7 @@ def test_series_that_do_not_count_leave_the_spreads() -> None:
     np.testing.assert_allclose(mixed.log_hardness[:10], alone.log_hardness, atol=1e-5)
 
 
-def test_readings_of_0_are_omitted_and_counted() -> None:
+def test_readings_of_0_are_omitted_and_counted_and_a_series_needs_two_readings_in_contact() -> None:
     readings, _ = simulated(10)
     depth = readings.penetration_depth.reshape(10, 7).copy()
     depth[3, :2] = 0.0
@@ -166,9 +166,6 @@ def test_readings_of_0_are_omitted_and_counted() -> None:
     assert model.n_zero.tolist() == [0, 0, 0, 2, 0, 0, 0, 0, 0, 0]
     assert np.isfinite(model.half_width(0)).all()
     assert abs(model.log_hardness[3] - fitted(readings).log_hardness[3]) < model.half_width(0)[3]
-
-
-def test_a_series_needs_two_readings_in_contact() -> None:
     readings, _ = simulated(3)
     depth = readings.penetration_depth.reshape(3, 7).copy()
     depth[0, :6] = 0.0

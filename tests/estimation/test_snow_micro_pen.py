@@ -70,7 +70,7 @@ def made(force: np.ndarray[tuple[int], np.dtype[np.float64]], step: float = 1e-5
     ))  # fmt: skip
 
 
-def test_a_stated_surface_leaves_the_air_before_it() -> None:
+def test_a_stated_surface_leaves_the_air_before_it_and_a_recording_must_reach_the_lower_depth() -> None:
     """30 mm of air with a spike, then 2 N and in the last millimetre 9 N; the median of the air is taken off."""
     force = np.concatenate((np.full(3000, 0.05), np.full(2900, 2.0), np.full(101, 9.0)))
     force[1000:1100] = 40.0
@@ -82,10 +82,7 @@ def test_a_stated_surface_leaves_the_air_before_it() -> None:
     assert kept.mean_force == pytest.approx(found.mean_force + 0.05)
     without_air = evaluate_profile(made(force[3000:]), SnowMicroPenSettings(), surface=0.0)
     assert (without_air.air_force, without_air.mean_force) == pytest.approx((0.0, kept.mean_force))
-
-
-def test_a_recording_must_reach_the_lower_depth() -> None:
-    """30 mm below the surface: the sample there is the last that it needs."""
+    # 30 mm below the surface: the sample there is the last that it needs.
     for more, flags in ((3000, ("too_short",)), (3001, ())):
         found = evaluate_profile(made(np.full(100 + more, 1.0)), SnowMicroPenSettings(), surface=1e-3)
         assert found.flags == flags
@@ -95,7 +92,7 @@ def test_a_recording_must_reach_the_lower_depth() -> None:
     assert {windows.n for windows in both.windows.values()} == {0}
 
 
-def test_without_noise_there_is_no_microstructure() -> None:
+def test_without_noise_there_is_no_microstructure_and_elements_are_as_large_as_the_tip_has_ruptures() -> None:
     """Of a force that does not change, and of one that is not above 0 or mostly 0; the mean force is known."""
     scatter = np.random.default_rng(1).normal(size=4000)
     spikes = np.where(np.arange(4000) % 3 == 0, np.abs(scatter), 0.0)  # a median of 0, which no relation takes
@@ -106,10 +103,7 @@ def test_without_noise_there_is_no_microstructure() -> None:
             assert windows.n == 0
             assert math.isnan(windows.snow_density)
             assert math.isnan(windows.element_size)
-
-
-def test_elements_are_as_large_as_the_tip_has_ruptures() -> None:
-    """λ L³ is the area of the tip: 2^(2/3) times the size for twice the width; ruptures follow the force."""
+    # λ L³ is the area of the tip: 2^(2/3) times the size for twice the width; ruptures follow the force.
     force = 2.0 + 0.1 * np.random.default_rng(2).normal(size=4000)
     one, wide, strong = (
         evaluate_profile(cast("Any", each), SnowMicroPenSettings(), surface=0.0)

@@ -190,15 +190,12 @@ def test_readings_are_si_and_belong_to_their_experiment(written: Any) -> None:
     assert written.variables["shear_test_snow_density"].standard_name == b"snow_density"
 
 
-def test_absent_numbers_are_missing_and_texts_are_kept(written: Any) -> None:
+def test_absent_numbers_are_missing_and_texts_are_kept_and_units_and_conventions_are_stated(written: Any) -> None:
     density = written.variables["penetration_test_snow_density"]
     assert density.data.tolist() == [density._FillValue] * 2
     assert texts(written, "penetration_test_site") == ["Süd", "Nord"]
     assert texts(written, "penetration_reading_further_1") == ["dry", "", "wet", ""]
     assert written.variables["penetration_reading_further_1"].long_name == b"remark"
-
-
-def test_units_and_conventions_are_stated(written: Any) -> None:
     assert written.Conventions.startswith(b"CF-")
     assert written.title.decode("utf-8") == "Hang Süd"
     units = {name: getattr(variable, "units", None) for name, variable in written.variables.items()}

@@ -43,7 +43,7 @@ def test_edge_by_adding_up_strips(place: int) -> None:
     assert np.reshape(told("02-edge", "force_by_heading_N"), (3, 7))[place] == pytest.approx([fresh] * 7, rel=1e-5)
 
 
-def test_energy_of_a_cycle_by_work() -> None:
+def test_energy_of_a_cycle_by_work_and_energy_of_a_shear_cycle_by_return_mapping() -> None:
     """A wedge at 45°: the force down ½ H L e², up (1 - κ (e_m - e)/e_m)² of the largest, integrated over the way."""
     hard, length, ratio, deepest = 1e8, 0.4, 8.0, 0.0
     lost = []
@@ -55,9 +55,6 @@ def test_energy_of_a_cycle_by_work() -> None:
         up = 0.5 * hard * length * deepest**2 * np.maximum(0.0, 1 - ratio * (1 - e / deepest)) ** 2
         lost.append(float(np.trapezoid(down - up, e)))
     assert told("03-cycles", "energy_lost_per_cycle_J") == pytest.approx(lost, rel=1e-6, abs=1e-9)
-
-
-def test_energy_of_a_shear_cycle_by_return_mapping() -> None:
     grip, reach, lost = 3e5 * 0.002 * 0.4, 5e-4, []
     for amplitude in read_case("03-cycles")["motion"]["shear_amplitude_m"]:
         anchor, work, before = 0.0, 0.0, 0.0

@@ -45,15 +45,12 @@ def run_with_boots() -> Run:
     return replace(run, boots=boots, boots_by="moved by a table")
 
 
-def test_a_tilted_plane_as_a_grid_is_that_plane_everywhere() -> None:
+def test_a_tilted_plane_as_a_grid_is_that_plane_everywhere_and_heights_are_those_that_the_skis_run_on() -> None:
     plane = -0.2 * X[:, None] + 0.05 * Y
     shown = present(replay_of_run(over(plane)).terrain)
     assert shown.grade == pytest.approx((-0.2, 0.05), abs=1e-12)
     for x, y in ((3.21, 4.4), (-300.0, 7.0), (500.0, -900.0)):
         assert float(shown.heights(x, y)) == pytest.approx(-0.2 * x + 0.05 * y, abs=1e-9)
-
-
-def test_heights_are_those_that_the_skis_run_on() -> None:
     run = over(hills(X[:, None], Y))
     terrain = present(replay_of_run(run).terrain)
     x, y = np.random.default_rng(1).uniform((-4.0, -10.0), (25.0, 10.0), (200, 2)).T
@@ -109,7 +106,7 @@ def test_gates_of_the_course_stand_on_the_snow() -> None:
     assert found[:, 2] == pytest.approx(run.scenario.slope.surface.heights([4.0, 9.0], [2.0, -1.0]))  # type: ignore[union-attr]
 
 
-def test_skis_are_where_their_boots_have_them() -> None:
+def test_skis_are_where_their_boots_have_them_and_moving_boots_are_in_the_moving_model() -> None:
     """By hand: the middle of a flat ski's base goes from the boot along its own axis ahead."""
     run = run_with_boots()
     skis = replace(run.skis, bending=0.0 * run.skis.bending, twist=0.0 * run.skis.twist)
@@ -123,9 +120,6 @@ def test_skis_are_where_their_boots_have_them() -> None:
             assert edges[ski].mean(axis=1) == pytest.approx(middle, abs=1e-12)
             across = edges[ski, :, 0] - edges[ski, :, 1]
             assert across == pytest.approx(2.0 * replay.skis.half_width[:, None] * left, abs=1e-12)
-
-
-def test_moving_boots_are_in_the_moving_model() -> None:
     replay = replay_of_run(run_with_boots())
     model = GlbFile(moving_replay_model(replay))
     for frame, time in enumerate(replay.time):

@@ -147,15 +147,12 @@ TABLE = Table(
 )
 
 
-def test_no_text_is_a_formula_and_every_number_stays() -> None:
+def test_no_text_is_a_formula_and_every_number_stays_and_values_come_back_with_all_digits() -> None:
     rows = [("=1+1", 1, True, ["@x"], (-1.5, (-2.0, -1.0)), None, 0.5)]
     (row,) = csv.DictReader(io.StringIO(table_csv(replace(TABLE, rows=rows)), newline=""))
     assert (row["site"], row["flags"]) == ("'=1+1", "'@x")
     assert (row["H_V_N_per_mm3"], row["H_V_N_per_mm3_low"]) == ("-1.5", "-2.0")
-
-
-def test_values_come_back_with_all_digits() -> None:
-    """Lines end as RFC 4180 has it."""
+    # Lines end as RFC 4180 has it.
     text = table_csv(TABLE)
     assert text.endswith("\r\n")
     assert text.count("\r\n") == 3

@@ -67,7 +67,7 @@ def found() -> Identification:
     )  # fmt: skip
 
 
-def test_the_terminal_has_every_number(found: Identification) -> None:
+def test_the_terminal_has_every_number_and_what_is_not_known_is_reported(found: Identification) -> None:
     """A value to two digits of its standard error."""
     text = identify_summary(found)
     rows = {line.split()[0]: line for line in text.splitlines() if line}
@@ -76,9 +76,6 @@ def test_the_terminal_has_every_number(found: Identification) -> None:
     assert rows["drag.drag_area_m2"].split(maxsplit=1)[1] == "0.410 m²  [0.370, 0.450]"
     for part in ("-0.93", "points 6", "freedom 4", "12 ", "5 kept", "1.25 s"):
         assert part in text
-
-
-def test_what_is_not_known_is_reported(found: Identification) -> None:
     nothing = replace(
         found, parameters=(Identified(parameter=MU), Identified(parameter=AREA, value=0.41)), data=(),
         correlation=np.full((2, 2), np.nan), effort=Effort(simulations=12, wall_s=1.25),

@@ -252,7 +252,7 @@ def slalom() -> TrackSummary:
     return track_summary(track(along(np.sin(np.pi * way / 15.0) / 12.0, 0.01)[::100], noise=NOISE))
 
 
-def test_map_has_equal_scales_and_its_turns() -> None:
+def test_map_has_equal_scales_and_its_turns_and_radius_axis_is_even_in_curvature() -> None:
     summary = slalom()
     with journal_style():
         axes = track_map(summary).axes[0]
@@ -260,11 +260,7 @@ def test_map_has_equal_scales_and_its_turns() -> None:
     assert switch_times(summary) == pytest.approx([1.5, 3.0, 4.5], abs=0.06)
     dots = [line for line in axes.lines if line.get_marker() == "o"]
     assert len(np.asarray(dots[0].get_xdata())) == 3
-
-
-def test_radius_axis_is_even_in_curvature() -> None:
-    """At its tick of 15 m the axis is at 1/15; the drawn curve is the curvature."""
-    summary = slalom()
+    # At its tick of 15 m the axis is at 1/15; the drawn curve is the curvature.
     with journal_style():
         axes = track_along(summary).axes[-1]
     ticks = dict(zip(axes.get_yticks(), (label.get_text() for label in axes.get_yticklabels()), strict=True))

@@ -176,16 +176,13 @@ def carried(hardness: float, edge_angle_deg: float) -> tuple[float, float]:
     return _carried_across(stood(hardness, edge_angle_deg))
 
 
-def test_edged_skis_carry_from_their_edge_to_the_waterline() -> None:
+def test_edged_skis_carry_from_their_edge_to_the_waterline_and_in_soft_snow_and_flat_the_whole_base_carries() -> None:
     """4 · 425 N/(12.5 MN/m³ · 0.8 · 1.7 m) = (10 mm)²: 20 mm of the base are wet, on the side of the edge."""
     inner, outer = 0.25 + 0.02 - 0.035, 0.25 + 0.035
     assert carried(12.5e6, 45.0) == pytest.approx((inner, outer))
     assert carried(12.5e6, -45.0) == pytest.approx((outer, inner))
     # where the tangent is a quarter it is half as deep and twice as wide
     assert carried(12.5e6, math.degrees(math.atan(0.25))) == pytest.approx((inner + 0.02, outer))
-
-
-def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
     for angle in (45.0, -45.0, 0.0):
         assert carried(1e5, angle) == pytest.approx((0.285, 0.285))
 

@@ -71,7 +71,7 @@ def needed(run: Run, rise: float = 0.0) -> tuple[FloatArray, FloatArray]:
     return to_left, g * math.cos(ANGLE) - 25.0 * rise * np.sin(5.0 * TIME)
 
 
-def test_lean_and_pressure_are_those_of_the_places_and_forces() -> None:
+def test_lean_and_pressure_are_those_of_the_places_and_forces_and_skis_in_a_plough_lean_no_less() -> None:
     """The load's centre lies where it balances 300 N on the left and 500 N on the right ski, 0.4 m apart."""
     found = balance_of(moved())
     aside = HEIGHT * math.tan(0.4)
@@ -82,10 +82,7 @@ def test_lean_and_pressure_are_those_of_the_places_and_forces() -> None:
     assert found.leg == pytest.approx(np.full(len(TIME), math.hypot(aside, HEIGHT)))
     assert found.load == pytest.approx(np.broadcast_to([LEFT, RIGHT], (len(TIME), 2)))
     assert found.angulation == pytest.approx(np.full(len(TIME), -0.4))  # flat skis under a body that leans
-
-
-def test_skis_in_a_plough_lean_no_less() -> None:
-    """Each turned by 30 degrees: the mean of their axes is shorter than either, and the way ahead is the same."""
+    # Each turned by 30 degrees: the mean of their axes is shorter than either, and the way ahead is the same.
     run = moved()
     turned = []
     for ski, angle in enumerate((-math.pi / 6.0, math.pi / 6.0)):
@@ -114,7 +111,7 @@ def test_skis_that_hardly_bear_have_no_centre_of_pressure() -> None:
     assert np.isfinite(balance_of(moved(load=0.0)).lean).all()
 
 
-def test_a_body_in_balance_leans_as_what_its_skis_give_it() -> None:
+def test_a_body_in_balance_leans_as_what_its_skis_give_it_and_roll_and_rise_take_their_part() -> None:
     """tan Ψ = (v²/R + g sin α sin θ)/(g cos α), with θ from the fall line: uphill of it the slope helps."""
     run = moved()
     found = balance_of(run)
@@ -124,10 +121,7 @@ def test_a_body_in_balance_leans_as_what_its_skis_give_it() -> None:
     for each in (found.balanced_lean, found.rolling_lean):
         assert np.isnan(each[[0, 1, -2, -1]]).all()
         assert np.isfinite(each[2:-2]).all()
-
-
-def test_roll_and_rise_take_their_part() -> None:
-    """I φ''/(m z) to the left, and the rise of the centre of mass beside gravity."""
+    # I φ''/(m z) to the left, and the rise of the centre of mass beside gravity.
     run = moved(rise=0.05, roll=0.2)
     found = balance_of(run)
     aside, up = needed(run, rise=0.05)
@@ -209,7 +203,7 @@ def test_summary_has_the_keys_of_the_contract_and_holds_to_its_schema() -> None:
     assert (found["outcome"], found["steps"], found["rejected_steps"], found["wall_s"]) == ("finished", 1000, 7, 0.5)
 
 
-def test_numbers_are_those_of_the_closed_form() -> None:
+def test_numbers_are_those_of_the_closed_form_and_balance_error_is_what_is_missing_of_what_was_turned_over() -> None:
     found = summary_dict(straight_run(ASKED.scenario), ASKED.values)
     assert found["run_length_m"] == pytest.approx(LENGTH, rel=1e-12)
     assert found["simulated_s"] == 2.0
@@ -224,10 +218,7 @@ def test_numbers_are_those_of_the_closed_form() -> None:
     assert energies["lost_friction_J"] == pytest.approx(0.05 * MASS * 9.81 * 0.984807753012208 * LENGTH, rel=1e-12)
     assert (energies["elastic_ski_J"], energies["elastic_snow_J"]) == (1.0, 2.0)
     assert found["energy_balance_error"] < 1e-14  # rounding: the closed form balances
-
-
-def test_balance_error_is_what_is_missing_of_what_was_turned_over() -> None:
-    """Without the friction's loss just that is missing of kinetic start energy, no loss, and the fall in potential."""
+    # Without the friction's loss just that is missing of kinetic start energy, no loss, and the fall in potential.
     run = straight_run(ASKED.scenario)
     friction = float(run.energies["friction"][-1])
     without = replace(run, energies=run.energies | {"friction": np.zeros_like(run.time)})

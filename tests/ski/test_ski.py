@@ -151,14 +151,11 @@ def test_points_of_a_circle_return_its_radius(radius: float) -> None:
     assert radius_of_least_squares_circle(x, y) == pytest.approx(radius, rel=1e-9)
 
 
-def test_radius_does_not_change_when_the_edge_is_turned_moved_or_mirrored() -> None:
+def test_radius_does_not_change_when_the_edge_is_turned_moved_or_mirrored_and_a_straight_edge_has_no_radius() -> None:
     turn = np.linspace(-0.06, 0.05, 101)
     x, y = 13.0 * np.sin(turn), 13.0 * (1.0 - np.cos(turn))
     c, s = math.cos(0.3), math.sin(0.3)
     assert radius_of_least_squares_circle(c * x - s * y + 2.0, -(s * x + c * y) - 1.0) == pytest.approx(13.0, rel=1e-9)
-
-
-def test_a_straight_edge_has_no_radius() -> None:
     x = np.linspace(-0.7, 0.7, 101)
     assert radius_of_least_squares_circle(x, 0.03 + 0.01 * x) == math.inf
 

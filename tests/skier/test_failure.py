@@ -53,14 +53,11 @@ def test_each_limit_is_named_with_time_and_place(code: str, seen: dict[str, Any]
     assert found.place[0] == pytest.approx(12.0)
 
 
-def test_the_first_limit_counts() -> None:
+def test_the_first_limit_counts_and_who_stays_within_all_limits_or_was_beyond_one_long_ago_has_no_cause() -> None:
     hips, grip = {"body_heading": 2.0}, {"across": 0.0}
     for first, second, code in ((hips, grip, "hips"), (grip, hips, "grip")):
         found = present(cause_of(records((2.0, first), (2.2, second)), Skier(brakes_to=6.0), WEIGHT))
         assert found.code == code
-
-
-def test_who_stays_within_all_limits_or_was_beyond_one_long_ago_has_no_cause() -> None:
     skier = Skier(brakes_to=6.0)
     long_ago = ((0.5, {"body_heading": 2.0}), (1.0, {"body_heading": 0.2}))
     assert cause_of(records(*long_ago), skier, WEIGHT) is None

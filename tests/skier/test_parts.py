@@ -91,17 +91,14 @@ def test_a_race_piste_holds_whatever_is_asked() -> None:
     assert found.holding(736.0) > 4.0
 
 
-def test_a_body_scales() -> None:
+def test_a_body_scales_and_a_body_is_the_mean_of_three_men() -> None:
     one, other = body_of(75.0, 1.76), body_of(150.0, 1.76)
     assert other.inertia == pytest.approx([2.0 * each for each in one.inertia])
     assert 0.54 < one.standing_height / 1.76 < 0.58
     assert load_scenario("skier-10deg").sledge.inertia == pytest.approx(one.inertia, abs=0.06)
     with pytest.raises(ParameterError, match="from 20 to 200"):
         body_of(7.0, 1.76)
-
-
-def test_a_body_is_the_mean_of_three_men() -> None:
-    """Weights (lb), heights and centres of mass (in), moments (lb in s²) standing and crouched, of the report."""
+    # Weights (lb), heights and centres of mass (in), moments (lb in s²) standing and crouched, of the report.
     men = (
         (173.5, 72.2, 32.2, (132.0 + 41.4, 119.0 + 37.3, 13.1 + 29.9)),
         (147.3, 67.4, 29.8, (95.6 + 32.9, 81.9 + 30.4, 10.3 + 21.5)),

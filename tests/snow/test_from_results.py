@@ -197,14 +197,11 @@ def test_snow_without_interval_is_rejected() -> None:
         drawn_snows(replace(SNOW, failure_shear_stress_interval=(0.0, 2.0)), np.full((3, 2), 0.5))
 
 
-def test_a_value_with_an_uneven_interval_keeps_both() -> None:
+def test_a_value_with_an_uneven_interval_keeps_both_and_an_even_interval_is_drawn_from_as_that_of_s_f() -> None:
     """1.5 standard deviations to either side: a half of 95 % is 1.96 of them, so the ends to the power 1.5/1.96."""
     shares = np.array([0.025, 0.5, 0.975, 0.0668072013, 0.9331927987])
     expected = [6.0, 9.0, 27.0, 9.0 * (6.0 / 9.0) ** (1.5 / 1.959964), 9.0 * 3.0 ** (1.5 / 1.959964)]
     assert log_normal(9.0, (6.0, 27.0), shares) == pytest.approx(expected, rel=1e-6)
-
-
-def test_an_even_interval_is_drawn_from_as_that_of_s_f() -> None:
     shares = np.random.default_rng(2).random((50, 2))
     stress = [snow.failure_shear_stress for snow in drawn_snows(SNOW, shares)]
     middle = float(np.sqrt(1.0e5 * 1.8e5))

@@ -23,7 +23,7 @@ from tests.present import present
 from .paths import NOISE, circle, track
 
 
-def test_cubic_at_uneven_times_comes_back_exactly() -> None:
+def test_cubic_at_uneven_times_comes_back_exactly_and_even_times_give_the_filter_of_savitzky_and_golay() -> None:
     time = np.sort(np.random.default_rng(1).uniform(0.0, 5.0, 120))
     time -= time[0]
     place = np.stack([1.0 - 2.0 * time + 0.5 * time**3, 3.0 * time**2], axis=1)
@@ -33,9 +33,6 @@ def test_cubic_at_uneven_times_comes_back_exactly() -> None:
     assert found.velocity[:, 1] == pytest.approx(6.0 * time, abs=1e-7)
     assert found.acceleration[:, 0] == pytest.approx(3.0 * time, abs=1e-5)  # a ridge of 1e-13 and rounding, over h²
     assert found.acceleration[:, 1] == pytest.approx(np.full_like(time, 6.0), abs=1e-5)
-
-
-def test_even_times_give_the_filter_of_savitzky_and_golay() -> None:
     made = track(circle(15.0, 8.0), noise=NOISE)
     found = smooth_track(made, window=1.0)
     for derivative, values in ((0, found.place), (1, found.velocity), (2, found.acceleration)):
@@ -49,7 +46,7 @@ def test_noise_is_estimated_from_the_scatter() -> None:
     assert np.mean(noises) == pytest.approx(NOISE, rel=0.04)
 
 
-def test_jump_without_a_mark_does_not_raise_the_noise_but_its_own_errors() -> None:
+def test_jump_without_a_mark_does_not_raise_the_noise_but_its_own_errors_and_marked_points_take_no_part() -> None:
     made = track(circle(15.0, 8.0, duration=30.0), noise=NOISE)
     before = smooth_track(made)
     made.place[150, 0] += 5.0
@@ -57,9 +54,6 @@ def test_jump_without_a_mark_does_not_raise_the_noise_but_its_own_errors() -> No
     assert after.place_noise == pytest.approx(before.place_noise, rel=0.05)
     assert after.covariance[150, 2, 2] > 1e3 * before.covariance[150, 2, 2]
     assert after.covariance[100, 2, 2] == pytest.approx(before.covariance[100, 2, 2], rel=0.2)
-
-
-def test_marked_points_take_no_part() -> None:
     made = track(circle(15.0, 8.0), noise=NOISE)
     jump = np.zeros(len(made), dtype=bool)
     jump[40] = True

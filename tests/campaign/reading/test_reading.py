@@ -38,7 +38,7 @@ def test_the_small_in_si(small: SmallCampaign) -> None:
     assert campaign.excluding == {"cancelled", "too_few_loads", "loads_not_rising", "depth_shrinks", "zero_depth"}
 
 
-def test_penetration_in_si(small: SmallCampaign) -> None:
+def test_penetration_in_si_and_the_other_tables_in_si(small: SmallCampaign) -> None:
     tests = present(small.read().penetration)
     assert tests.experiment == ("P1", "P2")
     assert tests.site == ("Süd", "Nord")
@@ -52,9 +52,6 @@ def test_penetration_in_si(small: SmallCampaign) -> None:
     np.testing.assert_array_equal(tests.snow_density, [355.0, np.nan])
     assert np.isnan(tests.drop_cone_depth).all()
     assert tests.further == {"remark": ("first", "", "hard, wet", "", "")}
-
-
-def test_the_other_tables_in_si(small: SmallCampaign) -> None:
     campaign = small.read()
     shear, density, cone = campaign.shear, campaign.density, campaign.drop_cone
     assert shear is not None

@@ -395,16 +395,13 @@ def test_what_is_written_of_turning_and_waiting_is_read_back(seed: int, tmp_path
     assert present(read.penetration).depth_after == pytest.approx(drawn.penetration.depth_after, nan_ok=True)
 
 
-def test_u_y_is_found_where_nothing_errs() -> None:
+def test_u_y_is_found_where_nothing_errs_and_the_interval_of_u_y_holds_its_median_and_creep_is_flagged() -> None:
     """Without errors, to the rounding of moments and of angles, 0.0001° at 250 mm: 0.4 µm of 250."""
     noise = dataclasses.replace(QUIET, turning_sd=0.0)
     drawn = reference_campaign(1, noise=noise, turning_angles=True)
     found = present(skisnow.analyse(drawn.campaign(), n_resamples=100).shear)
     assert found.displacement.value == pytest.approx(drawn.shear_displacement, rel=0.01)
     assert np.median(drawn.shear_displacement) == pytest.approx(0.25e-3, rel=0.1)
-
-
-def test_the_interval_of_u_y_holds_its_median_and_creep_is_flagged() -> None:
     analysis = skisnow.analyse(reference_campaign(1, turning_angles=True, creep=True).campaign(), n_resamples=100)
     snow = analysis.snow()
     low, high = present(snow.shear_displacement_interval)

@@ -170,7 +170,7 @@ def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
     )
 
 
-def test_elastic_snow_gives_back_everything() -> None:
+def test_elastic_snow_gives_back_everything_and_groove_is_paid_for_once() -> None:
     """Up v²/(2 g sin α), and as fast down as up at the same place: snow that springs back has no second pass."""
     run = up_and_back(1.0)
     x = run.place[:, 0]
@@ -179,10 +179,7 @@ def test_elastic_snow_gives_back_everything() -> None:
     height = math.sin(math.radians(ANGLE_DEG)) * (x - x[top])
     assert run.speed == pytest.approx(np.sqrt(2.0 * GRAVITY * np.maximum(height, 0.0)), rel=2e-3, abs=5e-3)
     assert abs(run.energies["penetration"][-1]) < 1e-3
-
-
-def test_groove_is_paid_for_once() -> None:
-    """The way back, 1.8 m in the groove of the way up, costs less than a tenth of what that part of it had cost."""
+    # The way back, 1.8 m in the groove of the way up, costs less than a tenth of what that part of it had cost.
     run = up_and_back(10.0)
     x, lost = run.place[:, 0], run.energies["penetration"]
     top = int(np.argmin(x))

@@ -55,7 +55,7 @@ def test_distance_reached(length: float) -> None:
     assert is_sound(run)
 
 
-def test_end_of_slope_and_tipped_over() -> None:
+def test_end_of_slope_and_tipped_over_and_airborne_off_a_kicker() -> None:
     """A straight ramp of 12 m: the tips, 0.8 m before the boots, reach its end within one output's way."""
     x = np.arange(0.0, 12.01, 0.5)
     run = simulate(flat_scenario(Profile(x, -0.17 * x), speed=5.0, x=1.0))
@@ -68,10 +68,7 @@ def test_end_of_slope_and_tipped_over() -> None:
     assert run.attitude[-1, 2, 2] == pytest.approx(0.5, abs=0.1)  # the cosine of 60°
     assert run.attitude[-1, 2, 1] > 0.5  # out of a left turn: to the right, the left side comes up
     assert is_sound(run)
-
-
-def test_airborne_off_a_kicker() -> None:
-    """A ramp that rises 5 % and breaks off at x = 8 m: the middle of mass goes on in a parabola for 0.3 s."""
+    # A ramp that rises 5 % and breaks off at x = 8 m: the middle of mass goes on in a parabola for 0.3 s.
     x = np.arange(0.0, 60.01, 0.25)
     run = simulate(flat_scenario(Profile(x, np.where(x < 8.0, 0.05 * (x - 8.0), -0.45 * (x - 8.0))), speed=14.0, x=2.0))
     assert run.outcome == "airborne"

@@ -167,7 +167,7 @@ def flat(*, friction: float, speed: float, duration: float) -> Run:
     return simulate(scenario.with_(solver=Solver(output_interval=0.05)))
 
 
-def test_friction_holds_a_ski_at_rest() -> None:
+def test_friction_holds_a_ski_at_rest_and_a_ski_comes_to_rest_and_stays() -> None:
     """It gives by a part of the stick displacement, swings about it, and stands; that energy is counted."""
     run = flat(friction=0.05, speed=0.0, duration=5.0)
     assert run.outcome == "finished"
@@ -177,10 +177,7 @@ def test_friction_holds_a_ski_at_rest() -> None:
     assert run.speed[-1] < 1e-9
     held = 0.5 * 0.05 * load(run.scenario) * STICK_DISPLACEMENT * share**2
     assert np.abs(run.energy_residual).max() < 0.3 * held
-
-
-def test_a_ski_comes_to_rest_and_stays() -> None:
-    """From 2 m/s over v²/(2 g (μ cos α - sin α)), less what the snow takes else; then it does not creep."""
+    # From 2 m/s over v²/(2 g (μ cos α - sin α)), less what the snow takes else; then it does not creep.
     run = flat(friction=0.1, speed=2.0, duration=5.0)
     slope = math.radians(2.0)
     way = run.place[-1, 0] - run.place[0, 0]

@@ -87,7 +87,7 @@ def test_smooth_load_at_the_stations() -> None:
     assert error[-1] < 1e-6
 
 
-def test_stations_measure_the_ski() -> None:
+def test_stations_measure_the_ski_and_mass_and_inertia_of_the_free_parts() -> None:
     """Their weights add up to the length and to its moments, falling from tip to tail; the slope is along the ski."""
     model = clamped(plain_ski(), 0.3, 160)
     at = model.stations
@@ -101,10 +101,7 @@ def test_stations_measure_the_ski() -> None:
     ahead, behind = (beam_at(model, u, at.station + side * step)[0] for side in (1.0, -1.0))
     assert np.sum(at.deflection * value, axis=1) == pytest.approx(beam_at(model, u, at.station)[0], abs=1e-14)
     assert np.sum(at.slope * value, axis=1) == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-7)
-
-
-def test_mass_and_inertia_of_the_free_parts() -> None:
-    """Both free parts lifted by x - clamp: m' ∫ (x - a)² dx of each. Twisted so: m' W²/12 of it, as thin strips."""
+    # Both free parts lifted by x - clamp: m' ∫ (x - a)² dx of each. Twisted so: m' W²/12 of it, as thin strips.
     model = clamped(plain_ski(width=0.08), 0.3, 80)
     lifted, twisted = np.zeros((2, model.size))
     number = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
