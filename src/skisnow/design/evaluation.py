@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from itertools import chain, repeat
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,19 +14,14 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
 from ..carving.answer import asked_snow
 from ..carving.equilibrium import differentiable_carve
-from ..carving.sensitivity import ski_derivatives
+from ..carving.question import CarveQuestion
+from ..carving.sensitivity import CarveDerivatives, ski_derivatives
+from ..carving.solve import Solution
+from ..ski import Ski
 from ..ski.ski_file import ski_of_keys
+from ..snow import SnowProperties
+from .task import DesignTask, Goal
 from .variables import COMBINED, combined_names, designed_keys, start_value
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from ..carving.question import CarveQuestion
-    from ..carving.sensitivity import CarveDerivatives
-    from ..carving.solve import Solution
-    from ..ski import Ski
-    from ..snow import SnowProperties
-    from .task import DesignTask, Goal
 
 
 @dataclass(slots=True, eq=False)

@@ -15,23 +15,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.units import DEGREE, MM
 from ..ski.assembling import ArcOutline, SkiParts, width_of_table
-from ..ski.layout import TAIL_OVERHANG, Layout, layout_of_lengths
+from ..ski.layout import TAIL_OVERHANG, Layout, StationFunction, layout_of_lengths
+from ..ski.ski import Ski
 from ..ski.ski_file import read_ski
 from ..ski.table_file import StationTable
 from .ski_tables import BEND_TEST, TORSION_TEST, Mapped, read_ski_table
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-    from ..ski.layout import StationFunction
-    from ..ski.ski import Ski
 
 _POINTS: Final = 801
 """Of the integral over a span: the error is below 10⁻⁵."""

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import SolverError
 from .evaluation import Evaluator
+from .task import Goal
 from .variables import designed_keys, start_value
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from .task import Goal
-
 
 REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached, and breach at which a limit counts as kept."""

@@ -6,20 +6,17 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import decimal_mark, number
 from .._support.user_files import plain_bytes
-from ..campaign.importing.sheets import column_letters, read_sheets
+from ..campaign.importing.sheets import Sheet, column_letters, read_sheets
 from ..campaign.reading.headings import FORM, conversion, known_unit, named_unit, plain_heading, units_for
 from ..parameters import suggest_and_list
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-    from ..campaign.importing.sheets import Sheet
 
 SYNONYMS: Final = {
     "station_mm": "station, position, distance, abstand, stelle, x",

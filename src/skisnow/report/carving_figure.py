@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .._support.arrays import FloatArray
@@ -14,10 +16,6 @@ from .._support.units import MM
 from .figures.style import BLACK, DOUBLE_MM, GREY, PALE, legend_below, line_style, new_figure
 from .formatting import figure_text, significant
 from .summaries import answers_of, ski_titles
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Json: TypeAlias = Mapping[str, Any]
 

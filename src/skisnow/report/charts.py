@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.units import MM
+from ..campaign.records import Campaign, PenetrationTests
 from ..geometry import GeometryForm, Tool, in_form
+from ..ski import Ski
 from .formatting import significant
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-    from ..campaign.records import Campaign, PenetrationTests
-    from ..ski import Ski
-
 
 _NOTHING: Final = (np.zeros(0), np.zeros(0))
 POINTS: Final = 31

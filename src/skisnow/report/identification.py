@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .._support.arrays import BoolArray
@@ -16,21 +19,14 @@ from .._support.errors import require_language
 from .._support.messages import ENGLISH, Message, in_language, outcome_words, template
 from .._support.spreadsheet_text import csv_text, protect_from_formulas
 from .._support.staging import require_writable, staged, write_file
+from ..identification.problem import Fit
+from ..identification.result import Identification, Interval
 from .figures.drawing import Drawing, Picture
 from .figures.figure_files import Progress, picture_files, silent, write_pictures
 from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, MARKERS, ORANGE, PALE, legend_below, new_figure
 from .formatting import counted, figure_text, interval, json_text, prose, significant
 from .sheet import Header, Section, sheet
 from .table import Column, Table
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..identification.problem import Fit
-    from ..identification.result import Identification, Interval
 
 Json: TypeAlias = "Mapping[str, Any]"
 ANSWER: Final = "identification.json"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 
@@ -12,12 +14,7 @@ from .._support.errors import SkisnowError
 from .._support.messages import Message
 from .._support.units import DEGREE
 from .._support.user_files import is_file, read_json
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from ..track.track import Track
+from ..track.track import Track
 
 Json = dict[str, Any]
 RADII: Final = ("turn_radius_boot_m", "turn_radius_boot_other_spread_m", "turn_radius_chord_m", "turn_radius_median_m")

@@ -5,8 +5,12 @@ from __future__ import annotations
 import itertools
 import math
 import textwrap
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
@@ -14,12 +18,6 @@ from .._support.messages import local_number
 from ..carving.question import CARVE_KEYS
 from ..studies import StudyTable
 from .formatting import figure_text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Json = dict[str, Any]
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from .._support.messages import Message
 from .._support.units import DEGREE
+from ..studies import StudyTable
 from .figures.style import (
     BLACK,
     BLUE,
@@ -41,14 +45,6 @@ from .study_layout import (
     wants_logarithm,
     write_caption,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ..studies import StudyTable
 
 Json = dict[str, Any]
 

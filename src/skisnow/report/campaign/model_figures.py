@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ...estimation.models import FORMS, ModelFit
+from ...estimation.readings import Readings
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
@@ -25,16 +29,8 @@ from ..figures.style import (
     thinned,
 )
 from ..formatting import html, prose, significant, whole
+from .data import Json, ReportData
 from .model_tables import formula
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-
-    from ..._support.arrays import FloatArray
-    from ...estimation.readings import Readings
-    from .data import Json, ReportData
 
 MOST_GROUPS: Final = 12
 TOO_FEW: Final = Message("the series are too few, or all at one edge angle")

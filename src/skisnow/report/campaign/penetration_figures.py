@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM
+from ...campaign.records import PenetrationTests
 from ...estimation.regressions import PEN_FORCE_KEY
 from ...geometry import in_form
 from ..charts import law_of_series
@@ -31,15 +36,6 @@ from ..figures.style import (
 from ..formatting import p_equals, prose, whole
 from .data import Json, ReportData, numbers, pairs, texts
 from .series_tables import count_resolved_offsets
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
-    from ..._support.arrays import FloatArray
-    from ...campaign.records import PenetrationTests
 
 MOST_SERIES: Final = 40
 """Maximum number of series in one panel of Fig 5."""

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import CONFIDENCE, DEGREE, MM
 from ...estimation.regressions import HARDNESS_KEY, STRESS_KEY
@@ -18,14 +22,6 @@ from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import BLACK, SitePlot, SiteStyle, logarithmic, masks, spans_a_decade
 from ..formatting import counted, interval, p_equals, prose, significant
 from .data import Json, ReportData, numbers
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from markupsafe import Markup
-    from matplotlib.axes import Axes
-
-    from ..._support.arrays import FloatArray
 
 SIGNIFICANT: Final = 0.05
 MOST_SENTENCES: Final = 6

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM
 from ...campaign.records import DensitySamples
@@ -28,13 +31,6 @@ from ..figures.style import (
 )
 from ..formatting import figure_text, prose
 from .data import Json, ReportData, TextArray, numbers, pairs
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from matplotlib.axes import Axes
-
-    from ..._support.arrays import FloatArray
 
 MOST_SITES: Final = 40
 _ROW_MM: Final = 4.6

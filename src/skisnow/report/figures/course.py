@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
@@ -15,16 +17,10 @@ from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ...scenario import Plane
 from ...scenario.terrain import normals_of
+from ...simulation.run import Run
 from ...simulation.run_summary import run_gates
+from ...track.course import CourseResult
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ...simulation.run import Run
-    from ...track.course import CourseResult
-
 
 STRETCHED: Final = 5.0
 """Ratio of length to width of a course above which both axes have different scales."""

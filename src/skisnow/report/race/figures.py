@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message, joined
+from ...racing import QuickestLine, RacingLine, Worth
+from ...track.course.gates_table import GateGap
 from ..figures.drawing import Drawing
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMILLION, legend_below, new_figure
 from ..formatting import figure_text, prose
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ...racing import QuickestLine, RacingLine, Worth
-    from ...track.course.gates_table import GateGap
 
 _HEIGHT_MM = 105.0
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..._support.arrays import FloatArray
@@ -34,12 +37,6 @@ from ..figures.style import (
 )
 from ..formatting import significant
 from .track_figure import SKI_COLOURS, SKIS
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.collections import QuadMesh
-    from matplotlib.figure import Figure
-
 
 _TIMES_MEDIAN: Final = 3.0
 """Ratio of a radius to the median above which it is not drawn."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
@@ -17,16 +20,8 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import Message, outcome_words
 from ..._support.units import MM
 from ...scenario import Plane
+from ...simulation.run import Run
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ...simulation.run import Run
-
 
 SKI_COLOURS: Final = (BLUE, VERMILLION)
 """Colours of the left and the right ski."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
@@ -13,15 +15,9 @@ from matplotlib.ticker import MaxNLocator
 from ..._support.arrays import FloatArray, IntArray
 from ..._support.messages import Message
 from ...track.curvature import INTERVAL_FACTOR
+from ...track.summary import TrackSummary
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
 from ..formatting import counted
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ...track.summary import TrackSummary
-
 
 _LABELS: Final = {
     "file": ("$x$ (m)", "$y$ (m)"),

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..._support.arrays import FloatArray
 from ..._support.messages import ENGLISH, Message
 from ..._support.staging import require_writable, staged, write_file
+from ...comparison import Comparison, Distances
+from ...track.course import CourseResult
 from ...track.course.gates_table import gates_csv
 from ...track.summary import TrackSummary, summary_dict
 from ..figures.course import course_line
@@ -33,15 +38,6 @@ from ..formatting import figure_text, json_text, prose, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from .figures import coloured_map, track_along, track_map
 from .summary import GPX_FILE, POINTS_FILE, TITLES, TURNS_FILE, points_csv, track_gpx, turns_csv
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ...comparison import Comparison, Distances
-    from ...track.course import CourseResult
 
 FIGURES: Final = ("map", "speed", "radius", "along", "course")
 """Names of a track's figures, in figures/ as .png and .svg; the last one only with gates."""

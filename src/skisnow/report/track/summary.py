@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime, timedelta
 from itertools import chain
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -15,13 +16,9 @@ from ..._support.messages import Message, local_number
 from ..._support.spreadsheet_text import csv_text, protect_from_formulas
 from ..._support.units import DEGREE
 from ...track.projection import earth_centred, east_north_up_axes, geodetic
+from ...track.summary import TrackSummary
+from ...track.turns import Turn
 from ..formatting import aligned_rows, date_words, named_rows, plain
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from ...track.summary import TrackSummary
-    from ...track.turns import Turn
 
 Json = dict[str, Any]
 MOST_ROWS: Final = 40

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..._support.arrays import FloatArray, IntArray
@@ -16,6 +18,7 @@ from ..._support.units import MM
 from ...comparison.distances import arc_lengths
 from ...comparison.nearest_place import distance_from_path
 from ...scenario import Plane
+from ...simulation.run import Run
 from ..figures.style import (
     BLACK,
     BLUE,
@@ -31,12 +34,6 @@ from ..figures.style import (
 )
 from ..formatting import figure_text
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from ...simulation.run import Run
 
 QUANTILES: Final = (0.05, 0.25, 0.5, 0.75, 0.95)
 FEWEST: Final = 3
