@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import SkisnowError
+from skisnow._support.messages import in_language
 from skisnow.cli import main
 from skisnow.cli.shell import json_schema
 from skisnow.racing.windows import Windows
@@ -73,7 +74,8 @@ def test_a_second_run_and_a_track_are_in_the_page(folder: Path, tmp_path: Path) 
 def test_a_report_that_lies_there_gets_the_link_once(folder: Path, language: str, capsys: Printed) -> None:
     """It is then the page that a run with its replay has."""
     run = circle_run(count=21)
-    without, linked = (run_page(run, summary_of(run), [], has_replay=each, language=language) for each in (False, True))
+    with in_language(language):
+        without, linked = (run_page(run, summary_of(run), [], has_replay=each) for each in (False, True))
     assert 'href="replay.html"' not in without
     page = folder / "report.html"
     page.write_text(without, encoding="utf-8")

@@ -198,7 +198,11 @@ def _without(text: str, names: frozenset[str]) -> str:
 
 def left(page: Callable[[str], str], names: frozenset[str], *, fewest: int) -> set[str]:
     """Texts of a page that stay as they are or have an English word, but for names and keys."""
-    english, german = (texts(page(language)) for language in ("en", "de"))
+    pages = []
+    for language in ("en", "de"):
+        with in_language(language):
+            pages.append(texts(page(language)))
+    english, german = pages
     words = {each for each in english if re.search("[A-Za-z]{4}", _without(each, names))} - KEYS
     assert len(words) > fewest
     stayed = words & german
@@ -213,7 +217,7 @@ def test_no_text_of_a_german_run_is_left_in_english() -> None:
     names = frozenset({run.scenario.contact.snow.source, *CHOICES})
 
     def page(language: str) -> str:
-        return run_page(run, summary_of(run), drawn(run_drawings(run), names, language), language=language)
+        return run_page(run, summary_of(run), drawn(run_drawings(run), names, language))
 
     assert left(page, names, fewest=150) == set()
 
@@ -223,7 +227,7 @@ def test_no_text_of_a_german_turn_is_left_in_english(chain: TurnChain) -> None:
 
     def page(language: str) -> str:
         pictures = drawn(turn_report._make_drawings(chain), names, language)
-        return turn_report.turn_page(chain, pictures, language=language)
+        return turn_report.turn_page(chain, pictures)
 
     assert left(page, names, fewest=120) == set()
 
@@ -239,7 +243,7 @@ def test_no_text_of_a_german_identification_is_left_in_english(found: Identifica
 
     def page(language: str) -> str:
         pictures = drawn(identify_report._drawings(found), names, language)
-        return identify_report.identify_page(found, pictures, language=language)
+        return identify_report.identify_page(found, pictures)
 
     assert left(page, names, fewest=30) == set()
 
@@ -256,7 +260,7 @@ def test_no_text_of_german_gaps_is_left_in_english() -> None:
             for name, speed in zip(NAMES, (8.0, 9.0), strict=True)
         ]
         compared, verdict = comparison_dict(compare_tracks(*tracks)), run_verdict(*tracks)
-        return comparison_page(compared, pictures, verdict=verdict, gaps=GAPS, language=language)
+        return comparison_page(compared, pictures, verdict=verdict, gaps=GAPS)
 
     assert left(page, names, fewest=12) == set()
 

@@ -259,6 +259,7 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
 def _write_comparison(
     options: argparse.Namespace, comparison: Comparison, answer: dict[str, Any], verdict: Message | None, gaps: Gaps
 ) -> None:
+    from .._support.messages import in_language
     from .._support.staging import staged, write_file
     from ..report.figures.figure_files import write_pictures
     from ..report.formatting import json_text
@@ -266,12 +267,11 @@ def _write_comparison(
     from ..report.track.page import comparison_page
     from ..report.track.report import comparison_drawing
 
-    language = options.language
     with staged(options.out, last="compare.json") as stage:
         stage.stale += FILES
-        pictures = [] if gaps is None else write_gaps(gaps, comparison.names, stage.path, language=language)
-        pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path, language=language)
-        page = comparison_page(answer, pictures, verdict=verdict, gaps=gaps, language=language)
-        write_file(stage.path / "report.html", page)
+        with in_language(options.language):
+            pictures = [] if gaps is None else write_gaps(gaps, comparison.names, stage.path)
+            pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path)
+            write_file(stage.path / "report.html", comparison_page(answer, pictures, verdict=verdict, gaps=gaps))
         write_file(stage.path / "compare.json", f"{json_text(answer)}\n")
     print(f"Figure: {options.out / 'track_comparison.png'}, and as SVG, PDF, EPS and CSV", file=sys.stderr)

@@ -55,10 +55,10 @@ def write_identify_report(
         stage.stale += picture_files(FIGURES)
         write_file(stage.path / ANSWER, f"{json_text(contents)}\n")
         write_file(stage.path / "fits.csv", fits_csv(result))
-        drawings, figures = _drawings(result), stage.path / "figures"
-        pictures = write_pictures(drawings, figures, language=language, progress=progress)
-        progress("report.html")
-        write_file(stage.path / "report.html", identify_page(result, pictures, language=language))
+        with in_language(language):
+            pictures = write_pictures(_drawings(result), stage.path / "figures", progress=progress)
+            progress("report.html")
+            write_file(stage.path / "report.html", identify_page(result, pictures))
     return folder / "report.html"
 
 
@@ -75,42 +75,39 @@ def fits_csv(result: Identification) -> str:
     return csv_text(rows)
 
 
-def identify_page(result: Identification, pictures: list[Picture], *, language: str = ENGLISH) -> str:
-    """The HTML of the report."""
-    with in_language(language):
-        fits = [picture for picture in pictures if picture.name != "profiles"]
-        profiles = [picture for picture in pictures if picture.name == "profiles"]
-        outcome = outcome_words(result.outcome)
-        sections = [
-            Section(
-                "outcome",
-                Message("Outcome"),
-                key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
-                tables=[parameters_table(result)],
-            )
-        ]
-        if result.warnings:
-            sections.append(
-                Section(
-                    "warnings", Message("Warnings"), words=[prose("{text}.", text=text) for text in result.warnings]
-                )
-            )
-        if fits:
-            sections.append(Section("fit", Message("Measured and identified"), pictures=fits))
-        if len(result.parameters) > 1:
-            sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
-        if profiles:
-            sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
-        sections.append(Section("provenance", Message("How it was computed"), words=_method_sentences(result)))
-        facts = [
-            (Message("Scenario"), result.scenario),
-            (Message("Points"), str(result.points)),
-            (Message("Computed"), f"skisnow {version('skisnow')}"),
-        ]
-        title = f"{', '.join(row.parameter.name for row in result.parameters)}: {outcome}"
-        kind = Message("Parameters identified from measurements")
-        header = Header(kind, title, facts, headline=_headline(result))
-        return sheet(header, sections)
+def identify_page(result: Identification, pictures: list[Picture]) -> str:
+    """The HTML of the report in the current language."""
+    fits = [picture for picture in pictures if picture.name != "profiles"]
+    profiles = [picture for picture in pictures if picture.name == "profiles"]
+    outcome = outcome_words(result.outcome)
+    sections = [
+        Section(
+            "outcome",
+            Message("Outcome"),
+            key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
+            tables=[parameters_table(result)],
+        )
+    ]
+    if result.warnings:
+        sections.append(
+            Section("warnings", Message("Warnings"), words=[prose("{text}.", text=text) for text in result.warnings])
+        )
+    if fits:
+        sections.append(Section("fit", Message("Measured and identified"), pictures=fits))
+    if len(result.parameters) > 1:
+        sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
+    if profiles:
+        sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
+    sections.append(Section("provenance", Message("How it was computed"), words=_method_sentences(result)))
+    facts = [
+        (Message("Scenario"), result.scenario),
+        (Message("Points"), str(result.points)),
+        (Message("Computed"), f"skisnow {version('skisnow')}"),
+    ]
+    title = f"{', '.join(row.parameter.name for row in result.parameters)}: {outcome}"
+    kind = Message("Parameters identified from measurements")
+    header = Header(kind, title, facts, headline=_headline(result))
+    return sheet(header, sections)
 
 
 def _headline(result: Identification) -> Markup:

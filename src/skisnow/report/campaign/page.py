@@ -120,9 +120,10 @@ def _write(data: ReportData, stage: Path, language: str, report: Progress) -> li
         report(f"table {table.name}")
         write_file(stage / "tables" / f"{table.file_stem}.csv", table_csv(table))
         write_file(stage / "tables" / f"{table.file_stem}.tex", table_latex(table))
-    pictures, missing = _write_figures(data, stage / "figures", language, report)
-    report("report.html")
-    write_file(stage / "report.html", page(data, tables, pictures, missing, language=language))
+    with in_language(language):
+        pictures, missing = _write_figures(data, stage / "figures", report)
+        report("report.html")
+        write_file(stage / "report.html", page(data, tables, pictures, missing))
     report("results.json")
     write_file(stage / RESULTS, results_pieces(data.results))
     stale = [f"tables/{stem}{ending}" for stem in _stale_stems(all_tables.values()) for ending in (".csv", ".tex")]
@@ -136,34 +137,26 @@ def _stale_stems(tables: Iterable[Table]) -> Iterator[str]:
         yield from sorted(stems - {table.file_stem} if table.rows else stems)
 
 
-def page(
-    data: ReportData,
-    tables: Mapping[str, Table],
-    pictures: Sequence[Picture],
-    missing: Sequence[LeftOut],
-    *,
-    language: str = ENGLISH,
-) -> str:
-    """HTML of the report, with styles, figures and tables inside."""
-    with in_language(language):
-        return render_template(
-            "report.html",
-            **_frame(data),
-            key_results=key_results(data),
-            caveats=findings.caveats(data),
-            readings_used=findings.readings_used(data),
-            procedures_compared=findings.procedure_comparison(data),
-            seating_found=findings.seating_findings(data),
-            unloading_found=findings.unloading_findings(data),
-            regression_sentences=findings.regression_sentences(data),
-            tables=defaultdict(Markup, tables_html(tables)),
-            pictures=pictures,
-            missing=missing,
-            figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
-            matplotlib_version=version("matplotlib"),
-            cited=cited_text(),
-            bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
-        )
+def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]) -> str:
+    """HTML of the report in the current language, with styles, figures and tables inside."""
+    return render_template(
+        "report.html",
+        **_frame(data),
+        key_results=key_results(data),
+        caveats=findings.caveats(data),
+        readings_used=findings.readings_used(data),
+        procedures_compared=findings.procedure_comparison(data),
+        seating_found=findings.seating_findings(data),
+        unloading_found=findings.unloading_findings(data),
+        regression_sentences=findings.regression_sentences(data),
+        tables=defaultdict(Markup, tables_html(tables)),
+        pictures=pictures,
+        missing=missing,
+        figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
+        matplotlib_version=version("matplotlib"),
+        cited=cited_text(),
+        bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
+    )
 
 
 def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
@@ -248,9 +241,7 @@ def drawers_of(campaign: Campaign) -> tuple[Callable[[ReportData, Sequence[SiteS
     return of_plates + (recorded or (snow_profiles,) * has_profile)
 
 
-def _write_figures(
-    data: ReportData, folder: Path, language: str, progress: Progress
-) -> tuple[list[Picture], list[LeftOut]]:
+def _write_figures(data: ReportData, folder: Path, progress: Progress) -> tuple[list[Picture], list[LeftOut]]:
     """Write the figures for which the campaign has data; returns them, and the reasons for the missing ones."""
     missing: list[LeftOut] = []
 
@@ -263,4 +254,4 @@ def _write_figures(
             else:
                 missing.append(drawing)
 
-    return write_pictures(drawings(), folder, language=language, progress=progress), missing
+    return write_pictures(drawings(), folder, progress=progress), missing

@@ -30,35 +30,25 @@ def picture_files(names: Iterable[str]) -> list[str]:
     return [f"figures/{name}.{ending}" for name in names for ending in FORMS]
 
 
-def write_pictures(
-    drawings: Iterable[Drawing], folder: Path, *, language: str = ENGLISH, progress: Progress = silent
-) -> list[Picture]:
+def write_pictures(drawings: Iterable[Drawing], folder: Path, *, progress: Progress = silent) -> list[Picture]:
     """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
 
-    drawings: the drawings of the report.
-    folder: folder of the files, created if necessary.
-    language, progress: see `render_pictures`.
-    Returns: the pictures, for a page.
     Raises OutputError: a file cannot be written.
     """
-    pictures = render_pictures(drawings, language=language, progress=progress)
+    pictures = render_pictures(drawings, progress=progress)
     for picture in pictures:
         for ending, content in picture.files.items():
             write_file(folder / f"{picture.name}.{ending}", content)
     return pictures
 
 
-def render_pictures(
-    drawings: Iterable[Drawing], *, language: str = ENGLISH, progress: Progress = silent
-) -> list[Picture]:
-    """Render drawings in the house style.
+def render_pictures(drawings: Iterable[Drawing], *, progress: Progress = silent) -> list[Picture]:
+    """Render drawings in the house style and the current language; ``progress`` gets the name of each figure.
 
     drawings: an iterator that draws each figure when it is requested: a figure takes its style when it is created.
-    language: language of the figures.
-    progress: callback for the name of each figure.
     """
     pictures = []
-    with journal_style(), in_language(language):
+    with journal_style():
         for drawing in drawings:
             progress(Message("figure {name}", name=drawing.name))
             local_axes(drawing.figure)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from ..._support.messages import ENGLISH, Message, local_number, outcome_words
+from ..._support.messages import Message, local_number, outcome_words
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
 from ...racing import QuickestLine, Score, Worth, write_line
@@ -89,14 +89,12 @@ def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     return "\n".join([heading, *aligned_rows(rows), _result_sentence(gaps, names)])
 
 
-def write_gaps(
-    gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, *, language: str = ENGLISH
-) -> list[Picture]:
+def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) -> list[Picture]:
     """Write gate_gaps.csv and the figure gate_gaps, whose picture is returned for the page.
 
     Raises OutputError: a file cannot be written.
     """
-    pictures = write_pictures(gap_drawings(gaps, names), folder, language=language)
+    pictures = write_pictures(gap_drawings(gaps, names), folder)
     write_file(folder / GAPS_CSV, gaps_csv(gaps))  # the whole table, instead of the points that the figure shows
     return pictures
 

@@ -63,10 +63,11 @@ def write_run(
             write_more(stage.path)
         progress("run.nc")
         write_run_file(run, contents["scenario"], stage.path / "run.nc", provenance=contents["provenance"])
-        pictures = write_pictures(run_drawings(run), stage.path / "figures", language=language, progress=progress)
-        progress(PAGE)
         has_replay = (stage.path / REPLAY).is_file()
-        write_file(stage.path / PAGE, run_page(run, contents, pictures, has_replay=has_replay, language=language))
+        with in_language(language):
+            pictures = write_pictures(run_drawings(run), stage.path / "figures", progress=progress)
+            progress(PAGE)
+            write_file(stage.path / PAGE, run_page(run, contents, pictures, has_replay=has_replay))
     return folder / PAGE
 
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..._support.messages import ENGLISH, Message, in_language, local_number, outcome_words, template
+from ..._support.messages import Message, local_number, outcome_words, template
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
 from ...geometry.surfaces import Grid
@@ -42,45 +42,37 @@ def _replay_link() -> Markup:
     return Markup('<a href="{}">{}</a>').format(REPLAY, str(Message("the run in three dimensions")))
 
 
-def run_page(
-    run: Run,
-    summary: Mapping[str, Any],
-    pictures: Sequence[Picture],
-    *,
-    has_replay: bool = False,
-    language: str = ENGLISH,
-) -> str:
-    """HTML of a run's report, with a link to the replay if there is one."""
-    with in_language(language):
-        by_name = {picture.name: [picture] for picture in pictures}
-        sections = [
-            Section("outcome", Message("Outcome"), key=outcome_sentences(run), pictures=by_name.get("track", ())),
-            *_course_section(run, by_name),
-            Section("motion", Message("Speed, heading, turn radius"), pictures=by_name.get("motion", ())),
-            *(Section(name, title, pictures=by_name[name]) for name, title in _OF_SKIER.items() if name in by_name),
-            Section(
-                "along-skis",
-                Message("Along the skis"),
-                pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
-                tables=[skis_table(run)],
-            ),
-            Section(
-                "energies",
-                Message("Energies"),
-                pictures=by_name.get("energies", ()),
-                tables=[energies_table(dict(summary))],
-            ),
-        ]
-        if not pictures:
-            no_step = prose("The run ended before its first step; no figure can be drawn.")
-            sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[no_step])]
-        if summary.get("verification"):
-            sections.append(
-                Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
-            )
-        sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
-        sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
-        return sheet(_make_header(run, has_replay=has_replay), sections)
+def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, has_replay: bool = False) -> str:
+    """HTML of a run's report in the current language, with a link to the replay if there is one."""
+    by_name = {picture.name: [picture] for picture in pictures}
+    sections = [
+        Section("outcome", Message("Outcome"), key=outcome_sentences(run), pictures=by_name.get("track", ())),
+        *_course_section(run, by_name),
+        Section("motion", Message("Speed, heading, turn radius"), pictures=by_name.get("motion", ())),
+        *(Section(name, title, pictures=by_name[name]) for name, title in _OF_SKIER.items() if name in by_name),
+        Section(
+            "along-skis",
+            Message("Along the skis"),
+            pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
+            tables=[skis_table(run)],
+        ),
+        Section(
+            "energies",
+            Message("Energies"),
+            pictures=by_name.get("energies", ()),
+            tables=[energies_table(dict(summary))],
+        ),
+    ]
+    if not pictures:
+        no_step = prose("The run ended before its first step; no figure can be drawn.")
+        sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[no_step])]
+    if summary.get("verification"):
+        sections.append(
+            Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
+        )
+    sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
+    sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
+    return sheet(_make_header(run, has_replay=has_replay), sections)
 
 
 def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:

@@ -66,8 +66,8 @@ def _record_json(row: dict[str, Any]) -> dict[str, Any]:
 def page_of_track(path: Path, name: str, language: str = ENGLISH, *, back: str = "") -> str:
     """HTML of the page of a file, with a link back to a page; errors as in `read_track` and `track_summary`."""
     summary = track_summary(replace(read_track(path), name=name))
-    pictures = render_pictures(track_drawings(summary), language=language)
     with in_language(language):
+        pictures = render_pictures(track_drawings(summary))
         count = counted(len(summary.turns), "{count} turn", "{count} turns")
         sections = [
             Section("pictures", Message("From above"), pictures=pictures),
@@ -93,34 +93,31 @@ def comparison_page(
     *,
     verdict: Message | None = None,
     gaps: tuple[GateGap, ...] | None = None,
-    language: str = ENGLISH,
     further: Sequence[Section] = (),
     back: str = "",
 ) -> str:
-    """HTML of the page that compares two tracks.
+    """HTML of the page that compares two tracks, in the current language.
 
     comparison: contents of `skisnow.comparison.comparison_dict`.
     pictures: pictures of the tracks, and of the gates.
     verdict: verdict on the times of two computed runs (default: none).
     gaps: time lost from gate to gate (default: no gates in common).
-    language: language of the page (en, de).
     further: sections at the end.
     back: address of the page of the lab that links here (default: none).
     """
     names = comparison["simulated"]["name"], comparison["measured"]["name"]
-    with in_language(language):
-        measured = comparison["nearest"]["rms_m"] is not None
-        key = [html(text) for text in (verdict, track_verdict(comparison) if measured else None) if text]
-        of_gates = [picture for picture in pictures if picture.name == "gate_gaps"]
-        tracks = [picture for picture in pictures if picture.name != "gate_gaps"]
-        sections = [
-            Section("tracks", Message("Tracks"), key=key, pictures=tracks, tables=[_distances_table(comparison)]),
-        ]
-        if gaps is not None:
-            sections.insert(0 if not measured else 1, gaps_section(gaps, names, of_gates))
-        title = Message("{run} compared with {other}", run=names[0], other=names[1])
-        headline = (gaps_headline(gaps) if gaps is not None else "") or next(iter(key), "")
-        return sheet(Header(Message("Two tracks"), title, [], headline=headline, back=back), [*sections, *further])
+    measured = comparison["nearest"]["rms_m"] is not None
+    key = [html(text) for text in (verdict, track_verdict(comparison) if measured else None) if text]
+    of_gates = [picture for picture in pictures if picture.name == "gate_gaps"]
+    tracks = [picture for picture in pictures if picture.name != "gate_gaps"]
+    sections = [
+        Section("tracks", Message("Tracks"), key=key, pictures=tracks, tables=[_distances_table(comparison)]),
+    ]
+    if gaps is not None:
+        sections.insert(0 if not measured else 1, gaps_section(gaps, names, of_gates))
+    title = Message("{run} compared with {other}", run=names[0], other=names[1])
+    headline = (gaps_headline(gaps) if gaps is not None else "") or next(iter(key), "")
+    return sheet(Header(Message("Two tracks"), title, [], headline=headline, back=back), [*sections, *further])
 
 
 def _distances_table(comparison: Mapping[str, Any]) -> Table:
@@ -144,15 +141,15 @@ def page_of_tracks(
     """HTML of the page that compares two measured tracks, with the turns of both; errors as in `page_of_track`."""
     first, second = replace(read_track(path), name=name), replace(read_track(other), name=other_name)
     comparison = compare_tracks(first, second)
-    pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
     with in_language(language):
+        pictures = render_pictures(map(comparison_drawing, [comparison]))
         tables = [
             replace(turns_table(summary), name=f"turns_{number}")
             for number, summary in enumerate(map(track_summary, (first, second)), start=1)
             if summary.turns
         ]
         further = [Section("turns", Message("Turns"), tables=tables)] if tables else []
-    return comparison_page(comparison_dict(comparison), pictures, language=language, further=further, back=back)
+        return comparison_page(comparison_dict(comparison), pictures, further=further, back=back)
 
 
 def page_of_folders(
@@ -165,9 +162,9 @@ def page_of_folders(
     shown = names or (folder.name, other.name)
     first, second = (replace(read_compared(path), name=name) for path, name in zip((folder, other), shown, strict=True))
     comparison, gaps = compare_tracks(first, second), read_gate_gaps(folder, other)
-    pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
-    if gaps is not None:
-        pictures += render_pictures(gap_drawings(gaps, comparison.names), language=language)
-    verdict = time_verdict(first, second)
-    compared = comparison_dict(comparison)
-    return comparison_page(compared, pictures, verdict=verdict, gaps=gaps, language=language, back=back)
+    with in_language(language):
+        pictures = render_pictures(map(comparison_drawing, [comparison]))
+        if gaps is not None:
+            pictures += render_pictures(gap_drawings(gaps, comparison.names))
+        compared, verdict = comparison_dict(comparison), time_verdict(first, second)
+        return comparison_page(compared, pictures, verdict=verdict, gaps=gaps, back=back)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..._support.arrays import FloatArray
-from ..._support.messages import ENGLISH, Message
+from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import require_writable, staged, write_file
 from ...comparison import Comparison, Distances
 from ...track.course import CourseResult
@@ -74,8 +74,8 @@ def write_track_report(
                 write_file(stage.path / name, content)
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
-        drawings = track_drawings(summary, gates)
-        write_pictures(drawings, stage.path / "figures", language=language, progress=progress)
+        with in_language(language):
+            write_pictures(track_drawings(summary, gates), stage.path / "figures", progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 

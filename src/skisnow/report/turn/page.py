@@ -59,16 +59,16 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     folder = Path(folder)
     prepare_folder(folder)
     with staged(folder, last="report.html") as stage:
-        pictures = write_pictures(_make_drawings(chain), stage.path / "figures", language=language)
         write_file(stage.path / "turn.json", f"{json_text(turn_dict(chain))}\n")
-        write_file(stage.path / "report.html", turn_page(chain, pictures, language=language))
+        with in_language(language):
+            pictures = write_pictures(_make_drawings(chain), stage.path / "figures")
+            write_file(stage.path / "report.html", turn_page(chain, pictures))
     return folder / "report.html"
 
 
-def turn_page(chain: TurnChain, pictures: Sequence[Picture], *, language: str = ENGLISH) -> str:
-    """HTML of the report of a chain from campaign to turn."""
-    with in_language(language):
-        return sheet(_make_header(chain), _make_sections(chain, pictures))
+def turn_page(chain: TurnChain, pictures: Sequence[Picture]) -> str:
+    """HTML of the report of a chain from campaign to turn in the current language."""
+    return sheet(_make_header(chain), _make_sections(chain, pictures))
 
 
 def _make_drawings(chain: TurnChain) -> Iterator[Drawing]:
