@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
@@ -147,15 +148,13 @@ def print_manual(options: argparse.Namespace) -> int:
 
 
 def manual_page(parser: argparse.ArgumentParser, version: str) -> str:
-    """The page in roff, section 1."""
+    """The page in roff, section 1: the help of each command as it is printed."""
     lines = [
         f'.TH SKISNOW 1 "" "skisnow {_text(version)}" "User commands"',
         ".SH NAME",
         f"skisnow \\- {_text((parser.description or '').rstrip('.'))}",
-        ".SH SYNOPSIS",
-        *_synopsis(parser),
         ".SH COMMANDS",
-        *(line for name, command in _commands(parser) for line in _manual_of_command(command, _help_of(parser, name))),
+        *_help_lines(parser),
         ".SH EXIT STATUS",
         "0: done. 1: the data or the machine refused, with a sentence on standard error. 2: wrong words. 70: an error",
         "that was not foreseen. 130: interrupted.",
@@ -165,51 +164,14 @@ def manual_page(parser: argparse.ArgumentParser, version: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _commands(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
+def _help_lines(parser: argparse.ArgumentParser) -> Iterator[str]:
+    """Help of a command and of its commands, each below its name, in lines that fit a terminal."""
+    parser.formatter_class = partial(argparse.HelpFormatter, width=78)
+    yield from (f".SS {_text(parser.prog)}", ".nf", *map(_text, parser.format_help().splitlines()), ".fi")
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
-            yield from action.choices.items()
-
-
-def _help_of(parser: argparse.ArgumentParser, name: str) -> str:
-    actions = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    return next(
-        (choice.help or "" for action in actions for choice in action._choices_actions if choice.dest == name), ""
-    )
-
-
-def _manual_of_command(parser: argparse.ArgumentParser, about: str) -> Iterator[str]:
-    yield f".SS {_text(parser.prog)}"
-    yield from _synopsis(parser)
-    yield ".PP"
-    yield _text(_help_text(parser.description or about, parser))
-    for action in parser._actions:
-        if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction):
-            yield ".TP"
-            yield f".B {_text(_names_of_argument(action))}"
-            yield _text(_help_text(action.help or "", parser, action)) or "\\&"
-    for inner, command in _commands(parser):
-        yield from _manual_of_command(command, _help_of(parser, inner))
-
-
-def _synopsis(parser: argparse.ArgumentParser) -> Iterator[str]:
-    usage = parser.format_usage().removeprefix("usage:")
-    yield _text(" ".join(usage.split()))
-
-
-def _names_of_argument(action: argparse.Action) -> str:
-    metavar = action.metavar if isinstance(action.metavar, str) else None
-    if action.choices is not None and metavar is None:
-        metavar = "|".join(map(str, action.choices))
-    if not action.option_strings:
-        return metavar or action.dest
-    names = ", ".join(action.option_strings)
-    return names if action.nargs == 0 else f"{names} {metavar or action.dest.upper()}"
-
-
-def _help_text(text: str, parser: argparse.ArgumentParser, action: argparse.Action | None = None) -> str:
-    """Help text with argparse's values of %(default)s and %%."""
-    return text % {**(vars(action) if action is not None else {}), "prog": parser.prog}
+            for command in action.choices.values():
+                yield from _help_lines(command)
 
 
 def _text(text: str) -> str:
