@@ -123,10 +123,10 @@ CARVE = ["carve", "--ski", "slalom", "--edge-angle-deg", "45", "--load-N", "800"
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["simlate", "carved-46m"], "simulate?"),
-        (["store", "vrify"], "verify?"),
-        (["new", "campain", "x"], "campaign?"),
-        (["xxxxxxx"], "--help"),
+        (["simlate", "carved-46m"], "'simulate'"),
+        (["store", "vrify"], "'verify'"),
+        (["new", "campain", "x"], "'campaign'"),
+        (["xxxxxxx"], "'simulate'"),
         (["simulate"], "--list names them"),
         (["simulate", "carved-46m", "--replay"], "--out"),
         (["export", "fmu", "carved-46m", "--out", "sledge.zip", "--skis", "1"], "--contact"),

@@ -101,21 +101,15 @@ def analyse(options: argparse.Namespace) -> int:
     from ..campaign import read_campaign
     from ..estimation.results import results_json
 
-    chosen: dict[str, Any] = {}
-    if options.seed is not None:
-        chosen["seed"] = options.seed
-    if options.resamples is not None:
-        chosen["n_resamples"] = options.resamples
+    given = {"seed": options.seed, "n_resamples": options.resamples}
+    chosen: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     with Progress() as progress, paused_collector():
         campaign = read_campaign(options.campaign, progress=progress)
         if options.out is not None:
             prepare_output(options.out)
+        difference = options.difference / 100.0
         analysis = estimation.analyse(
-            campaign,
-            geometry=options.geometry,
-            difference=options.difference / 100.0,
-            progress=progress,
-            **chosen,
+            campaign, geometry=options.geometry, difference=difference, progress=progress, **chosen
         )
         if options.out is not None:
             from ..report import write_report

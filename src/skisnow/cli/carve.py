@@ -98,7 +98,9 @@ def carve_ski(options: argparse.Namespace) -> int:
 
     prepare_figure(options.figure)
     answers = _compute_answers(options)
-    _print_warnings(answers)
+    several = len(answers) > 1
+    lines = [f"{a.question.ski}: {text}" if several else text for a in answers for text in a.warnings]
+    print_warnings(dict.fromkeys(lines))
     result, derivatives = answers_dict(answers), []
     if options.sensitivity is not None:
         names = [name for name in options.sensitivity if name]
@@ -148,12 +150,6 @@ def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
 
         question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
         return [answer_question(carve_question(question | {"ski": ski})) for ski in options.ski]
-
-
-def _print_warnings(answers: list[CarveAnswer]) -> None:
-    several = len(answers) > 1
-    lines = [f"{a.question.ski}: {text}" if several else text for a in answers for text in a.warnings]
-    print_warnings(dict.fromkeys(lines))
 
 
 def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -24,32 +24,15 @@ _BEGINS_AS_NUMBER: Final = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
 class Parser(argparse.ArgumentParser):
     """A parser that names the option which a misspelt one is most like, before it misses that one."""
 
-    _has_commands = False
-
-    def add_subparsers(self, **named: Any) -> Any:
-        """Parser with subcommands, to which the options behind them belong."""
-        self._has_commands = True
-        return super().add_subparsers(**named)
-
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Look at the options, then parse as usual."""
-        if args is not None and not self._has_commands:
-            self._require_known(list(args))
-        return super().parse_known_args(args, namespace)
-
-    def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Name the command that a misspelt one is most like; anything else as usual."""
-        if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
-            similar = suggest(value, sorted(action.choices))
-            self.error(f"there is no command {value}. {similar}{self.prog} --help names all")
-        super()._check_value(action, value)
-
-    def _require_known(self, words: list[str]) -> None:
-        options = set(re.findall(r"--[\w-]+", self.format_help()))
+        """Look at the options, which belong to the last of several commands, then parse as usual."""
+        words = [] if args is None or self._subparsers is not None else list(args)
+        options = set(re.findall(r"--[\w-]+", self.format_help())) if words else set()
         for word in words[: words.index("--")] if "--" in words else words:
             name = word.split("=", 1)[0]
             if name.startswith("--") and not any(option.startswith(name) for option in options):
                 self.error(f"there is no option {name}. {suggest(name, sorted(options))}{self.prog} --help names all")
+        return super().parse_known_args(args, namespace)
 
 
 def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:

@@ -34,21 +34,8 @@ def print_warnings(warnings: Iterable[object]) -> None:
         print(f"warning: {warning}", file=sys.stderr)
 
 
-USUAL_S: Final = 10.0
-"""Seconds for a machine with a thousand fonts or more (milliseconds each); a hundred take less than a second."""
-
-
-def list_fonts() -> None:
-    """Let matplotlib scan the fonts before the work begins, with a message, if it has no list yet."""
-    import matplotlib
-
-    if not list(Path(matplotlib.get_cachedir()).glob("fontlist-*.json")):
-        with announced("listing this machine's fonts for the figures, this once", usual_s=USUAL_S):
-            import matplotlib.font_manager
-
-
 def prepare_output(folder: Path) -> None:
-    """Require a writable folder, clean up after killed processes with a message, and list the fonts for figures.
+    """Require a writable folder, and clean up after killed processes with a message.
 
     Raises OutputError: the folder cannot be made or written.
     """
@@ -56,11 +43,10 @@ def prepare_output(folder: Path) -> None:
 
     for sentence in prepare_folder(folder):
         print(sentence, file=sys.stderr)
-    list_fonts()
 
 
 def prepare_figure(place: Path | None) -> None:
-    """Require that a figure can be written at its place, and list the fonts for it; nothing without a place.
+    """Require that a figure can be written at its place; nothing without a place.
 
     Raises ParameterError, OutputError: as `require_drawable`.
     """
@@ -68,7 +54,6 @@ def prepare_figure(place: Path | None) -> None:
         from ..report.figures.figure_files import require_drawable
 
         require_drawable(place)
-        list_fonts()
 
 
 PAUSE_S: Final = 0.5
@@ -150,19 +135,18 @@ class Progress:
 
 
 @contextmanager
-def announced(doing: str, *, patience_s: float = 2.0, usual_s: float | None = None) -> Iterator[None]:
-    """Print the current step if it takes longer than this; on a terminal also the elapsed and the usual time."""
+def announced(doing: str, *, patience_s: float = 2.0) -> Iterator[None]:
+    """Print the current step if it takes longer than this; on a terminal also the elapsed time."""
     line, done, begun = MovingLine(), threading.Event(), time.monotonic()
-    about = "" if usual_s is None else f" of about {usual_s:.0f} s"
 
     def tell() -> None:
         if done.wait(patience_s):
             return
         if not line.moves:
-            line.show(f"{doing} …{about and f' about {usual_s:.0f} s'}")
+            line.show(f"{doing} …")
             return
         while True:
-            line.show(f"{doing} … {time.monotonic() - begun:.0f} s{about}")
+            line.show(f"{doing} … {time.monotonic() - begun:.0f} s")
             if done.wait(PAUSE_S):
                 return
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,8 @@ from .options import add_language, add_scheduler, add_workers, scheduler_of
 from .output import Progress, ending_is_an_interrupt, prepare_figure, report_interrupt
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..studies import Study, StudyTable
 
 
@@ -64,7 +65,7 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
     _print_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            table = run_study(study, workers=options.workers, executor=executor, progress=_Pace(progress))
+            table = run_study(study, workers=options.workers, executor=executor, progress=_count(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, study.partial)
     _print_outcomes(study.out, table)
@@ -84,11 +85,15 @@ def _run_part(options: argparse.Namespace, study: Study) -> int:
     executor = scheduler_of(options)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            place = run_shard(study, shard, workers=options.workers, executor=executor, progress=_Pace(progress))
+            place = run_shard(study, shard, workers=options.workers, executor=executor, progress=_count(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, shard.place(study))
     print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
     return 0
+
+
+def _count(progress: Progress) -> Callable[[int, int], None]:
+    return lambda done, total: progress(f"{done} of {total} points")
 
 
 def _merge_shards(options: argparse.Namespace) -> int:
@@ -140,24 +145,3 @@ def _draw_figure(options: argparse.Namespace, table: StudyTable) -> None:
     draw = {"radius": radius_map, "grip": grip_map}[options.map]
     write_figure(options.figure, lambda: draw(table), language=options.language)
     print(f"Figure: {options.figure}", file=sys.stderr)
-
-
-class _Pace:
-    """Finished points with their rate and the time left, counted from the first new ones on."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-        self._kept: int | None = None
-        self._begun: tuple[float, int] | None = None
-
-    def __call__(self, done: int, total: int) -> None:
-        if self._kept is None:
-            self._kept = done
-            finished = f"{done} of {total} points are finished already; " if done else ""
-            self._progress(f"{finished}starting the workers")
-        elif self._begun is None:
-            self._begun = (time.monotonic(), done)
-        else:
-            start, before = self._begun
-            rate = (done - before) / max(time.monotonic() - start, 1e-9)
-            self._progress(f"{done} of {total} points, {rate:.3g} per second, {(total - done) / rate:.0f} s left")

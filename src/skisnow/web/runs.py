@@ -70,9 +70,10 @@ _PROGRESS: Final = (
         template("{time:.2f} s simulated, {share:.0f} %, {rate:.3g} times real time"),
     ),
     (
-        re.compile(r"(?P<done>\d+) of (?P<total>\d+) points, (?P<rate>[\d.e+]+) per second, (?P<left>\d+) s left"),
-        template("{done:.0f} of {total:.0f} points, {rate:.3g} per second, {left:.0f} s left"),
+        re.compile(r"(?P<done>\d+) of (?P<total>\d+) points, about (?P<left>\d+) s left"),
+        template("{done:.0f} of {total:.0f} points, about {left:.0f} s left"),
     ),
+    (re.compile(r"(?P<done>\d+) of (?P<total>\d+) points"), template("{done:.0f} of {total:.0f} points")),
 )
 """Lines of progress of the commands with their templates."""
 
