@@ -199,25 +199,23 @@ INNER = packed({"inner/a": bytes(range(256)) * 8})
 BOMB = packed({"zeros": bytes(10_000_000)})
 LYING = packed({"zeros": bytes(100_000)}).replace((100_000).to_bytes(4, "little"), (10).to_bytes(4, "little"))
 FORBIDDEN: dict[str, tuple[bytes, str | Coded]] = {
-    "a folder": (packed({"a": b"x"}, mode=stat.S_IFDIR), "not_a_plain_file"),
-    "a link": (packed({"a": b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777), "not_a_plain_file"),
+    "a folder": (packed({"a": b"x"}, mode=stat.S_IFDIR), "damaged"),
+    "a link": (packed({"a": b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777), "damaged"),
     "nothing": (b"", "damaged"),
     "no zip": (b"PK\x03\x04 no zip", "damaged"),
     "letters": (b"x" * 500, "damaged"),
-    "bzip2": (packed({"a": b"x"}, method=zipfile.ZIP_BZIP2), "unknown_compression"),
+    "bzip2": (packed({"a": b"x"}, method=zipfile.ZIP_BZIP2), "damaged"),
     "a byte too much": (packed({"a": bytes(5001)}), "too_large"),
     "a bomb": (BOMB, coded("too_large", most=5000)),
     "other sizes than stated": (LYING, "damaged"),
     "a file too much": (packed(dict.fromkeys("abcde", b"")), "too_many_files"),
-    "a deep folder": (packed({f"{'a/' * 33}b": b""}), "too_deep"),
-    "a long name": (packed({"b" * 300: b""}), "name_too_long"),
     "a name twice": (packed({"a": b"", "a/b": b""}), "same_name"),
     "a broken file": (INNER[:60] + bytes(20) + INNER[80:], "damaged"),
     **{name: (packed({name: b"x"}), "not_taken_in") for name in ("../outside", "/outside", "..\\outside")},
-    "encrypted": (changed(INNER, _set(8, b"\x01\x00")), "encrypted"),
+    "encrypted": (changed(INNER, _set(8, b"\x01\x00")), "damaged"),
     "patched": (changed(INNER, _set(8, b"\x20\x00")), "damaged"),
-    "lzma": (changed(INNER, _set(10, b"\x0e\x00")), "unknown_compression"),
-    "an unknown method": (changed(INNER, _set(10, b"\x63\x00")), "unknown_compression"),
+    "lzma": (changed(INNER, _set(10, b"\x0e\x00")), "damaged"),
+    "an unknown method": (changed(INNER, _set(10, b"\x63\x00")), "damaged"),
     "elsewhere": (changed(INNER, _set(42, b"\xff\xff\xff\xff")), "damaged"),
     "a zero in a name": (changed(INNER, _set(46, b"inner\0/")), "damaged"),
     "no UTF-8": (changed(changed(INNER, _set(8, b"\x00\x08")), _set(46, b"\xff\xfe")), "damaged"),
@@ -232,19 +230,6 @@ def test_forbidden_contents_of_a_zip_are_rejected(folder: Path, content: bytes, 
         Unpacking(folder, LIMITS).take_zip(io.BytesIO(content))
     assert [path.name for path in folder.parent.iterdir()] == ["inside"]
     assert sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) <= LIMITS.unpacked_bytes
-
-
-def test_a_list_of_files_is_read_up_to_two_thousand_bytes_for_each(folder: Path) -> None:
-    def listed(size: int) -> io.BytesIO:
-        content = bytearray(packed({"a": b"1"}))
-        at = content.rindex(b"PK\5\6") + 12
-        content[at : at + 4] = size.to_bytes(4, "little")
-        return io.BytesIO(bytes(content))
-
-    with raises(ParameterError, "too_many_files", most=4):
-        Unpacking(folder, LIMITS).take_zip(listed(8001))
-    with raises(ParameterError, "damaged"):
-        Unpacking(folder, LIMITS).take_zip(listed(8000))
 
 
 def test_the_campaign_lies_in_the_only_folder_within_the_only_folder(folder: Path) -> None:
@@ -281,13 +266,6 @@ def test_two_files_of_one_name_are_rejected(folder: Path) -> None:
     with raises(ParameterError, "same_name"):
         unpacking.take("a", io.BytesIO(b"second"))
     assert (folder / "a").read_bytes() == b"first"
-
-
-def test_a_list_of_millions_of_files_is_not_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    content = io.BytesIO(packed({f"{number:04}{'x' * 100}": b"" for number in range(60)}))
-    monkeypatch.setattr(zipfile, "ZipFile", None)  # not even opened
-    with raises(ParameterError, "too_many_files", most=4):
-        Unpacking(folder, LIMITS).take_zip(content)
 
 
 def test_a_full_disk_is_not_taken_for_a_damaged_zip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
