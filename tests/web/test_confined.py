@@ -14,7 +14,6 @@ from skisnow._support.errors import FieldDataError, ParameterError, StoreError
 from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.studies import read_study
 from skisnow.web.page_requests import address, analysis, correction_address, entry_address, export, required_id
-from skisnow.web.studies import CARVE_S
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from skisnow.web.subprocesses import BOUNDS, Bounds, confined
 from skisnow.web.widgets import _short
@@ -114,14 +113,11 @@ TURNS = StudyQuestion(
     CARVE,
     {"edge_angle_deg": Range(10.0, 70.0, 3), "H_V_N_per_mm3": Range(0.1, 10.0, 3, log=True)},
     {"ski": "slalom", "load_N": 800.0, "S_f_N_per_mm2": 0.5, "unloading_ratio": float("inf")},
-    unit_s=CARVE_S,
 )
 RUNS = StudyQuestion(
     "carved-46m",
     {"start.speed_m_per_s": Range(6.0, 9.0, 2)},
     {"run.duration_s": 0.1, "ski.name": "slalom", "sledge.inertia_kg_m2": (6.0, 8.0, 10.0)},
-    method="accurate",
-    unit_s=0.1,
 )
 
 

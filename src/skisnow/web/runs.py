@@ -42,7 +42,7 @@ class Job:
     """A simulation: name of its folder, scenario, changed keys, time of the request (UTC), state.
 
     ``given``: inputs that were chosen by name, in words. ``took_s``: time from start to report of a finished job.
-    ``language``: language of the report. ``title``: name for people, which can be changed.
+    ``language``: language of the report. ``title``: name for people, which can be changed. ``points`` of a study.
     """
 
     name: str
@@ -55,6 +55,7 @@ class Job:
     took_s: float = 0.0
     language: str = ENGLISH
     title: str = ""
+    points: int = 0
 
     @property
     def shown_name(self) -> str:
@@ -113,11 +114,9 @@ class Runs:
 
     folder: folder with the folders of the jobs.
     progress: last progress message of the running job.
-    kind: class of the jobs.
     progress_lines: form of the lines of a running job that are progress messages.
     """
 
-    kind: type[Job] = Job
     progress_lines: ClassVar[re.Pattern[str]] = re.compile("")
 
     def __init__(self, folder: Path) -> None:
@@ -133,7 +132,7 @@ class Runs:
         jobs = []
         for place in self.folder.glob(f"*/{JOB}"):
             with contextlib.suppress(ContentError):  # the folder is being removed or damaged
-                jobs.append(read_record(place, self.kind))
+                jobs.append(read_record(place, Job, only_known=False))
         return sorted(jobs, key=lambda job: job.asked_at, reverse=True)
 
     def ask(

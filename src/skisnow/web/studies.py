@@ -9,8 +9,8 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
@@ -22,7 +22,7 @@ from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
 from ..studies import Study, StudyTable
 from .page_requests import hidden_folder
-from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s
+from .runs import AROUND_S, JOB, Job, Runs, duration_words, new_name, simulated_s
 from .study_fields import CARVE, MOST_POINTS, STUDY, TABLE, StudyQuestion
 from .uploads import files_below
 from .words import replaced
@@ -35,28 +35,13 @@ _AGAIN_S: Final = 3.0
 """Time (s) before a new attempt: a process of an earlier server ends at its next progress message."""
 
 
-@dataclass(frozen=True, slots=True)
-class StudyJob(Job):
-    """A study: ``scenario`` is its subject, ``changes`` its fixed and ``given`` its varied inputs, in words.
-
-    ``points``: number of points. ``workers``: number of processes, 0 with a scheduler. ``method``, ``unit_s``: solver,
-    and estimated time of a point at slowness 1 (s), see `unit_s`.
-    """
-
-    points: int = 0
-    workers: int = 0
-    method: str = ""
-    unit_s: float = 0.0
-
-
 class Studies(Runs):
-    """Queue and history of studies.
+    """Queue and history of studies: a job's scenario is its subject, the changes its fixed, given its varied inputs.
 
     folder: folder of the lab's runs; studies have a subfolder.
     scheduler: scheduler as in ``--scheduler`` of the command (default: processes of this machine on all cores but one).
     """
 
-    kind = StudyJob
     progress_lines = re.compile(r"^\d+ of \d+ points")
 
     def __init__(self, folder: Path, scheduler: str | None = None) -> None:
@@ -73,11 +58,7 @@ class Studies(Runs):
         """Number of processes or threads of this machine for a study."""
         return 0 if self.elsewhere else max(1, available_cores() - 1)
 
-    def study_jobs(self) -> list[StudyJob]:
-        """All studies, the newest first."""
-        return [job for job in self.jobs() if isinstance(job, StudyJob)]
-
-    def ask_for(self, question: StudyQuestion, language: str = ENGLISH) -> StudyJob:
+    def ask_for(self, question: StudyQuestion, language: str = ENGLISH) -> Job:
         """Store a study at the end of the queue; ``language``: language of its map.
 
         Raises ParameterError: the study is not valid; the message is that of the command.
@@ -102,18 +83,8 @@ class Studies(Runs):
             made.rename(self.folder / name)  # it becomes a study with its job.json
         with in_language(language):
             given = question.varied_words()
-        job = StudyJob(
-            name,
-            question.of,
-            question.fixed_words(),
-            asked_at.isoformat(),
-            given=given,
-            points=points,
-            workers=self.workers,
-            method=question.method,
-            unit_s=question.unit_s,
-            language=language,
-        )
+        fixed = question.fixed_words()
+        job = Job(name, question.of, fixed, asked_at.isoformat(), given=given, points=points, language=language)
         self._keep(job)
         return job
 
@@ -122,10 +93,10 @@ class Studies(Runs):
 
         Raises ParameterError: the study is neither cancelled nor failed.
         """
-        job = next((job for job in self.study_jobs() if job.name == name), None)
+        job = self._find_job(name)
         if job is None or job.state not in ("cancelled", "failed"):
             raise ParameterError("this study waits, is running or is done; it cannot be continued").tag("not_stopped")
-        self._keep(replace(job, state="waiting", said="", workers=self.workers))
+        self._keep(replace(job, state="waiting", said=""))
 
     def file(self, name: str, file: str) -> Path:
         """Path of a file of a study; other names are rejected.
@@ -170,8 +141,7 @@ class Studies(Runs):
             await asyncio.sleep(_AGAIN_S)
             return replace(job, state="waiting", said="")
         n_finished = await asyncio.to_thread(_finished, folder / PARTIAL)
-        n_points = job.points if isinstance(job, StudyJob) else 0
-        kept = Message("{done} of {all} points are finished and kept.", done=n_finished, all=n_points)
+        kept = Message("{done} of {all} points are finished and kept.", done=n_finished, all=job.points)
         finished = kept.text(job.language)
         if cancelled:
             return replace(job, state="cancelled", said=finished)
@@ -197,10 +167,7 @@ class Studies(Runs):
         """
         if not unit:
             return Message("{points} points.", points=points)
-        slowness = measured_slowness(self.study_jobs(), method)
-        if slowness is None:
-            slowness = runs.slowness(method) if method else 1.0
-        seconds = points * unit * slowness
+        seconds = points * unit * (runs.slowness(method) if method else 1.0)
         if self.elsewhere:
             return Message(
                 "{points} points, about {took} of one core, shared by the workers of {elsewhere}.",
@@ -233,7 +200,7 @@ def _without_folder(folder: Path, message: str) -> str:
 
 
 CARVE_S: Final = 0.03
-"""Time of a carved turn before the first study (s, laptop of 2025)."""
+"""Time of a carved turn (s, laptop of 2025)."""
 
 
 def unit_s(of: str, values: Mapping[str, Any]) -> float:
@@ -243,11 +210,3 @@ def unit_s(of: str, values: Mapping[str, Any]) -> float:
     values: values of the scenario by key.
     """
     return CARVE_S if of == CARVE else simulated_s(values) or 0.0
-
-
-def measured_slowness(jobs: Sequence[StudyJob], method: str) -> float | None:
-    """Ratio of computing time to that at slowness 1 in the last studies with this method; None without one."""
-    alike = [job for job in jobs if job.state == "done" and job.method == method and job.workers and job.unit_s]
-    jobs_ = [job for job in alike if job.took_s > AROUND_S][:LOOKED_AT]
-    work = sum(job.points * job.unit_s for job in jobs_)
-    return sum((job.took_s - AROUND_S) * job.workers for job in jobs_) / work if work else None

@@ -64,7 +64,6 @@ class StudyQuestion:
     varied, fixed: ranges and values by key; a list of values varies, too.
     beside: contents of the files that fixed values name, by name.
     named: inputs that were chosen by name, in words.
-    method, unit_s: see `StudyJob`.
     """
 
     of: str
@@ -72,8 +71,6 @@ class StudyQuestion:
     fixed: Mapping[str, Any]
     beside: Mapping[str, bytes] = dataclasses.field(default_factory=dict)
     named: tuple[str, ...] = ()
-    method: str = ""
-    unit_s: float = 0.0
 
     def files(self) -> dict[str, bytes]:
         """Contents of all files of the study by name, including `STUDY`."""

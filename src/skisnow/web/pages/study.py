@@ -17,11 +17,11 @@ from ..elements import Outcome, Words, button, choice, link, named, option_texts
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import redrawn_by
-from ..runs import Runs
+from ..runs import Job, Runs
 from ..scenario_fields import ScenarioField, field_label, in_labels
 from ..settings import Lab
 from ..snow_choice import SnowChoice
-from ..studies import Studies, StudyJob, unit_s
+from ..studies import Studies, unit_s
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..widgets import Act, JobCard, JobList
 from ..words import language_of, said, typed_number
@@ -217,8 +217,7 @@ class _Form:
             fixed |= values
             files |= further_files
             named_words += words
-        method, unit = self._unit()
-        return StudyQuestion(str(self._of.value), varied, fixed, files, tuple(named_words), method, unit)
+        return StudyQuestion(str(self._of.value), varied, fixed, files, tuple(named_words))
 
     def _counts(self, name: str, field: ScenarioField) -> bool:
         """True if a field fixes its input: a changed field of a scenario, or both snow numbers if one is changed."""
@@ -270,18 +269,18 @@ class _Form:
 class _Card(JobCard):
     """Card of a study."""
 
-    def add_buttons(self, job: StudyJob, act: Act) -> None:
+    def add_buttons(self, job: Job, act: Act) -> None:
         """Add Go on, and the link to the table."""
         go_on = button(Message("Go on"), lambda: act(lambda: self.runs.go_on(job.name)))
         self._go_on = named(go_on, Message("Go on with {name}", name=job.name))
         table = link(Message("Table and figure"), table_address(job.name), "main")
         self._table = named(table, Message("Table and figure of {name}", name=job.name))
 
-    def inputs(self, job: StudyJob) -> tuple[str, ...]:
+    def inputs(self, job: Job) -> tuple[str, ...]:
         """Subject and varied inputs of the study in words."""
         return CARVED if job.scenario == CARVE else job.scenario, job.given
 
-    def show(self, job: StudyJob) -> None:
+    def show(self, job: Job) -> None:
         """Show the state of the study."""
         super().show(job)
         self._go_on.set_visibility(job.state in ("cancelled", "failed"))

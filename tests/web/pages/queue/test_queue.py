@@ -18,7 +18,7 @@ from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web import widgets
 from skisnow.web.runs import Job, Runs, duration_words, new_name, simulated_s
-from skisnow.web.studies import Studies, StudyJob, measured_slowness, unit_s
+from skisnow.web.studies import Studies, unit_s
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from tests.coded import raises
 
@@ -85,7 +85,7 @@ def test_a_run_is_on_the_disk_as_it_was_asked(tmp_path: Path) -> None:
     assert json.loads(kept) == {
         "name": job.name, "scenario": "carved-46m", "changes": {"run.duration_s": "1", "ski.file": str(place)},
         "asked_at": job.asked_at, "state": "waiting", "said": "", "given": "ski: a ü", "took_s": 0.0, "language": "de",
-        "title": "",
+        "title": "", "points": 0,
     }  # fmt: skip
     assert "ü" in kept and '\n "name": ' in kept
     assert datetime.fromisoformat(job.asked_at).tzinfo == UTC
@@ -229,7 +229,7 @@ def test_a_core_stays_free_for_the_pages(
     assert (studies.workers, studies.elsewhere, studies.folder) == (workers, elsewhere, tmp_path / "studies")
     folder, by = tmp_path / "studies" / "n", [] if scheduler is None else ["--scheduler", scheduler]
     here = ["--workers", str(workers)] if workers else []
-    job = StudyJob("n", CARVE, {}, "2026", language="de")
+    job = Job("n", CARVE, {}, "2026", language="de")
     shown = ["--language", "de", "--figure", str(folder / "map.svg")]
     assert studies._command(job) == ["study", str(folder / "study.toml"), *by, *here, *shown]
     assert studies._command(replace(job, scenario="a")) == ["study", str(folder / "study.toml"), *by, *here]
@@ -238,7 +238,7 @@ def test_a_core_stays_free_for_the_pages(
 def test_a_study_is_on_the_disk_when_it_is_in_the_queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(studies_module, "available_cores", lambda: 5)
     studies = Studies(tmp_path)
-    job = studies.ask_for(replace(TURNS, beside={"ski/a.toml": b"b"}, named=("ski: a",), method="m"), "de")
+    job = studies.ask_for(replace(TURNS, beside={"ski/a.toml": b"b"}, named=("ski: a",)), "de")
     assert [path.name for path in studies.folder.iterdir()] == [job.name]
     assert {str(path.relative_to(studies.folder / job.name)) for path in studies.folder.rglob("*.*")} == {
         "job.json", "study.toml", "ski/a.toml",
@@ -246,10 +246,7 @@ def test_a_study_is_on_the_disk_when_it_is_in_the_queue(tmp_path: Path, monkeypa
     assert studies.jobs() == [job]
     fixed = {"load_N": "800", "H_V_N_per_mm3": "0.2", "S_f_N_per_mm2": "0.5", "unloading_ratio": "10"}
     assert job.given.endswith("ski: a")
-    assert job == StudyJob(
-        job.name, CARVE, fixed, job.asked_at, given=job.given, points=2, workers=4, method="m", unit_s=0.03,
-        language="de",
-    )  # fmt: skip
+    assert job == Job(job.name, CARVE, fixed, job.asked_at, given=job.given, points=2, language="de")
     assert (studies.folder / job.name).stat().st_mode & 0o777 == 0o755
 
 
@@ -269,7 +266,7 @@ def test_a_study_that_was_cancelled_or_failed_continues(tmp_path: Path, monkeypa
     for before in ("cancelled", "failed"):
         studies._keep(replace(first, state=before, said="so", took_s=3.0))
         studies.go_on(first.name)
-        assert studies.jobs() == [second, replace(first, workers=8, took_s=3.0)]
+        assert studies.jobs() == [second, replace(first, took_s=3.0)]
     for name, now in ((first.name, "waiting"), (first.name, "running"), (first.name, "done"), ("none", "failed")):
         studies._keep(replace(first, state=now))  # type: ignore[arg-type]
         with raises(ParameterError, "not_stopped"):
@@ -394,22 +391,6 @@ def test_a_duration_is_reported_as_exact_as_it_is_known(seconds: float, words: s
     assert duration_words(seconds) == words
 
 
-def study_done(**what: Any) -> StudyJob:
-    usual: dict[str, Any] = {"state": "done", "took_s": 18.0, "points": 10, "workers": 2, "unit_s": 0.5}
-    return StudyJob("a", CARVE, {}, "2026", **(usual | what))
-
-
-def test_of_studies_the_last_five_of_a_kind_tell_how_long_they_take() -> None:
-    assert measured_slowness([study_done()], "") == 4.0  # 10 s on two cores for 5 s
-    assert measured_slowness([study_done(method="fast")], "fast") == 4.0
-    assert measured_slowness([study_done(method="fast")], "") is None
-    every = [study_done(took_s=8.0), study_done(state="failed"), study_done(workers=0), study_done(unit_s=0.0)]
-    assert measured_slowness(every, "") is None
-    assert measured_slowness([*every, *[study_done()] * 5, study_done(took_s=999.0)], "") == 4.0
-    assert measured_slowness([*[study_done()] * 4, study_done(took_s=28.0)], "") == pytest.approx((4 * 20 + 40) / 25)
-    assert measured_slowness([study_done(points=0)], "") is None
-
-
 def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     timers = list[Any]()
     monkeypatch.setattr(f"{widgets.__name__}.ui.timer", lambda *what: timers.append(what))
@@ -450,4 +431,4 @@ def test_what_the_queue_rejects_is_reported(desk: Desk, monkeypatch: pytest.Monk
 
 
 TURN = {"ski": "carver", "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5, "unloading_ratio": 10.0}
-TURNS = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN, unit_s=0.03)
+TURNS = StudyQuestion(CARVE, {"edge_angle_deg": Range(10.0, 70.0, 2)}, TURN)

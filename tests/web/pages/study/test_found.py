@@ -11,7 +11,8 @@ import pytest
 
 from skisnow.report.formatting import significant
 from skisnow.web.pages import study as study_page
-from skisnow.web.studies import Studies, StudyJob
+from skisnow.web.runs import Job
+from skisnow.web.studies import Studies
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
 from ..desk import Desk
@@ -67,7 +68,7 @@ def test_a_card_shows_how_its_study_stands(
     for name in ("cancel", "go_on"):
         monkeypatch.setattr(studies, name, partial(lambda did, of: pressed.append((did, of)), name))
     told = {"name": "a study", "scenario": CARVE, "changes": {}, "asked_at": "2026", "given": f"{LOAD}: 4 to 5"}
-    job = StudyJob(**told | {"state": state} | further)
+    job = Job(**told | {"state": state} | further)
     before = len(page.outline())
 
     def shown() -> None:

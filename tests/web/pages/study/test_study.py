@@ -91,22 +91,6 @@ def test_how_long_it_takes_follows_what_is_typed(desk: Desk, steps: list[tuple[d
         assert numbers(estimate(page)) == told, typed
 
 
-def test_how_long_it_takes_is_learned_from_studies_with_the_method(desk: Desk) -> None:
-    """4 points of 5 s on two cores in 28 s, 8 of them around: 2 s for each second."""
-    page = scenario(desk)
-    page.fill("Method", "fast")
-    page.fill(VALUES, "4")
-    asked(desk, page)
-    place = next(desk.lab.runs.glob("studies/*/job.json"))
-    job = json.loads(place.read_text(encoding="utf-8"))
-    assert (job["method"], job["unit_s"]) == ("fast", 5.0)
-    place.write_text(json.dumps(job | {"state": "done", "took_s": 28.0}), encoding="utf-8")
-    page.fill(VALUES, "10")
-    assert numbers(estimate(page)) == "10 60 s"  # 58 s
-    page.fill("Method", "default")
-    assert numbers(estimate(page)) == "10 35 s"  # 33 s
-
-
 def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
     page = scenario(desk)
     job, text = asked(desk, page)
@@ -116,8 +100,8 @@ def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
         "fixed": {},
         "grid": {"start.speed_m_per_s": {"from": 6.0, "to": 12.0, "n": 7}},
     }
-    assert [job[key] for key in ("changes", "given", "method", "unit_s", "points")] == [
-        {}, f"{SPEED}: 6 to 12, 7 values", "default", 5.0, 7,
+    assert [job[key] for key in ("changes", "given", "points")] == [
+        {}, f"{SPEED}: 6 to 12, 7 values", 7,
     ]  # fmt: skip
     page.fill("Mass of the sledge m (kg)", "90,5")
     page.fill("Moments of inertia I (kg m²)", "[6, 8, 11]")
@@ -201,8 +185,8 @@ def test_a_study_of_carved_turns_is_asked_about_a_turn(desk: Desk) -> None:
 def test_a_study_without_typed_values_varies_the_edge_angle(desk: Desk) -> None:
     job, text = asked(desk, desk.open("/study"))
     assert text == {"out": "table.csv", "fixed": TURN, "grid": {"edge_angle_deg": {"from": 10.0, "to": 70.0, "n": 13}}}
-    kept = {key: job[key] for key in ("scenario", "state", "language", "points", "workers", "method", "unit_s")}
-    assert list(kept.values()) == [CARVE, "waiting", "en", 13, 2, "", 0.03]
+    kept = {key: job[key] for key in ("scenario", "state", "language", "points")}
+    assert list(kept.values()) == [CARVE, "waiting", "en", 13]
     assert job["changes"] == {
         "load_N": "800", "H_V_N_per_mm3": "0.2", "S_f_N_per_mm2": "0.5", "unloading_ratio": "10",
     }  # fmt: skip
