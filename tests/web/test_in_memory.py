@@ -73,7 +73,7 @@ def test_a_campaign_being_entered_is_analysed_as_its_export(lab: Lab, tmp_path: 
     write_campaign(lab, "entry", id_, tmp_path / "export")
     found = analyse_files(files_in_memory(lab, "entry", id_), Choice())
     assert isinstance(found, Numbers)
-    assert experiments(found.results) == experiments(analyse(read_campaign(tmp_path / "export")).results)
+    assert experiments(found.analysis.results) == experiments(analyse(read_campaign(tmp_path / "export")).results)
 
 
 def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: Lab, tmp_path: Path) -> None:
@@ -84,8 +84,8 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     found = analyse_files(files_in_memory(lab, "kept", id_), Choice())
     assert isinstance(found, Numbers)
     results = analyse(read_campaign(tmp_path / "export")).results
-    assert experiments(found.results) == experiments(results)
-    assert found.results["provenance"]["files"] == results["provenance"]["files"]
+    assert experiments(found.analysis.results) == experiments(results)
+    assert found.analysis.results["provenance"]["files"] == results["provenance"]["files"]
     assert found.analysis.campaign.unread_files == ("photo.jpg",)
     assert CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "2"] == experiments(results)[1]
     compared = [row for row in results["group_comparisons"] if row["quantity"] == "H_V"]
@@ -93,7 +93,7 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     assert CorrectionSession(lab, id_).quick_verdicts("density.csv") == []
     unchanged = analyse_files(before, Choice())
     assert isinstance(unchanged, Numbers)
-    assert experiments(unchanged.results)[1] != experiments(results)[1]
+    assert experiments(unchanged.analysis.results)[1] != experiments(results)[1]
 
 
 def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: Lab, tmp_path: Path) -> None:
@@ -108,8 +108,8 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
     id_ = lab.store.add(folder).id
     found = analyse_files(files_in_memory(lab, "kept", id_), Choice())
     assert isinstance(found, Numbers)
-    assert found.results["snow_micro_pen"]["recordings"][0]["mean_force_N"] == pytest.approx(2.0, rel=0.01)
-    assert found.results["weather"]["station"] == "S"
+    assert found.analysis.results["snow_micro_pen"]["recordings"][0]["mean_force_N"] == pytest.approx(2.0, rel=0.01)
+    assert found.analysis.results["weather"]["station"] == "S"
     assert "regressions" in found.tables["en"]
     (folder / "penetration.csv").unlink()
     alone = analyse_files(files_in_memory(lab, "kept", lab.store.add(folder).id), Choice())
@@ -119,7 +119,7 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
     assert set(CorrectionSession(lab, id_).tables) == {"penetration.csv"}
     assert (
         CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "1"]
-        == experiments(found.results)[0]
+        == experiments(found.analysis.results)[0]
     )
 
 

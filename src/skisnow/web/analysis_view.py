@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 from nicegui import ui
 from nicegui.events import ValueChangeEventArguments
@@ -15,7 +15,6 @@ from .._support.messages import Message, in_language, template
 from ..report.campaign.data import ReportData
 from .campaign_analysis import (
     AnalysisCache,
-    CachedAnalysis,
     CampaignSource,
     Choice,
     FigureImage,
@@ -26,8 +25,6 @@ from .campaign_analysis import (
 from .elements import Words, add_items, choice, folded, html_words, named
 from .layout import error_sentence, heading, sentence
 from .words import language_of, said
-
-Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 
 LONG_TABLES: Final = {
     "penetration_experiments": Message("Every penetration experiment"),
@@ -56,7 +53,7 @@ class OpenAnalysis:
     id: str
     subject: CampaignSource | None
     choice: Choice = field(default_factory=Choice)
-    analysed: CachedAnalysis | None = None
+    analysed: Numbers | None = None
     refused: str = ""
     closed: bool = False
     settled: asyncio.Event = field(default_factory=asyncio.Event)
@@ -133,19 +130,19 @@ class AnalysisView:
                     Message("Correct the files and import them again. Single cells can be corrected under Correct.")
                 )
 
-    def _show_result(self, result: CachedAnalysis) -> None:
+    def _show_result(self, result: Numbers) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, result
-        if first and ReportData(result.numbers.analysis).has_tests:
-            self._show_choices(result.numbers)
-        self._show_results(result.numbers)
-        self._show_tables(result.numbers)
-        self._status.set_text(Message("{counts}. Drawing the figures …", counts=self._counts_text(result.numbers)))
+        if first and ReportData(result.analysis).has_tests:
+            self._show_choices(result)
+        self._show_results(result)
+        self._show_tables(result)
+        self._status.set_text(Message("{counts}. Drawing the figures …", counts=self._counts_text(result)))
 
     def _counts_text(self, numbers: Numbers) -> str:
         with in_language(language_of(self._figures.client)):  # tasks in the background have no page
             return ReportData(numbers.analysis).counts
 
-    async def _draw(self, result: CachedAnalysis, number: int) -> None:
+    async def _draw(self, result: Numbers, number: int) -> None:
         """Show each figure when it is drawn; those of another choice stay until the first one."""
         begun = False
         async for shown in self._analyses.figures(result, language_of(self._figures.client)):
@@ -159,17 +156,17 @@ class AnalysisView:
             with self._figures:
                 _add_figure(shown)
         if not self._is_old(number):
-            self._status.set_text(f"{self._counts_text(result.numbers)}.")
+            self._status.set_text(f"{self._counts_text(result)}.")
 
     def _show_results(self, numbers: Numbers) -> None:
         """Show the key results of the report, then the table of the sites."""
         self._results.clear()
         with self._results:
-            heading(numbers.results["campaign"]["name"])
+            heading(numbers.analysis.results["campaign"]["name"])
             with ui.element("ul").classes("results"):
                 add_items(numbers.verdicts, sentence)
                 add_items(numbers.key_results[language_of()], html_words)
-            for warning in numbers.results["penetration"]["warnings"]:
+            for warning in numbers.analysis.results["penetration"]["warnings"]:
                 sentence(warning, "quiet")
             tables = numbers.tables[language_of()]
             if FIRST_TABLE in tables:
@@ -202,13 +199,13 @@ class AnalysisView:
             _add_folded(Message("Included experiments"), lambda: self._list_experiments(numbers))
 
     def _list_marks(self, numbers: Numbers) -> None:
-        before = numbers.excluding
+        before = numbers.analysis.campaign.excluding
         for code, words in choosable_flags().items():
-            ui.checkbox(said(words), value=code in before, on_change=self._flag_chooser(code, before))
+            ui.checkbox(said(words), value=code in before, on_change=partial(self._choose_flag, code, before))
 
     def _list_experiments(self, numbers: Numbers) -> None:
         for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
-            rows = numbers.results[kind]["experiments"]
+            rows = numbers.analysis.results[kind]["experiments"]
             for row in rows[:MOST_LISTED]:
                 self._add_experiment_box(file, kind, row)
             if len(rows) > MOST_LISTED:
@@ -219,26 +216,22 @@ class AnalysisView:
         words = Message(
             _EXPERIMENT[kind, cancelled], name=row["experiment"], site=row["site"], angle=row["edge_angle_deg"]
         )
-        chosen = self._test_chooser((file, str(row["experiment"])))
+        chosen = partial(self._choose_test, (file, str(row["experiment"])))
         box = ui.checkbox(said(words), value=not cancelled, on_change=chosen)
         if cancelled:
             box.disable()
 
-    def _flag_chooser(self, code: str, of_campaign: frozenset[str]) -> Chooser:
-        async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
-            chosen_before = self._page.choice.excluding
-            excluding = of_campaign if chosen_before is None else chosen_before
-            excluding = excluding | {code} if event.value else excluding - {code}
-            await self._choose(replace(self._page.choice, excluding=excluding))
+    async def _choose_flag(
+        self, code: str, of_campaign: frozenset[str], event: ValueChangeEventArguments[bool | None]
+    ) -> None:
+        before = self._page.choice.excluding
+        excluding = of_campaign if before is None else before
+        excluding = excluding | {code} if event.value else excluding - {code}
+        await self._choose(replace(self._page.choice, excluding=excluding))
 
-        return chosen
-
-    def _test_chooser(self, test: tuple[str, str]) -> Chooser:
-        async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
-            out = self._page.choice.left_out
-            await self._choose(replace(self._page.choice, left_out=out - {test} if event.value else out | {test}))
-
-        return chosen
+    async def _choose_test(self, test: tuple[str, str], event: ValueChangeEventArguments[bool | None]) -> None:
+        out = self._page.choice.left_out
+        await self._choose(replace(self._page.choice, left_out=out - {test} if event.value else out | {test}))
 
     async def _choose(self, choice: Choice) -> None:
         self._page.choice = choice

@@ -62,29 +62,6 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Numbers:
-    """Analysis of a campaign with a choice, its verdicts, and the report's key results and tables as HTML.
-
-    Both are by language, the tables also by name.
-    """
-
-    analysis: Analysis
-    verdicts: tuple[Message, ...]
-    key_results: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    tables: dict[str, dict[str, str]] = field(default_factory=dict)
-
-    @property
-    def results(self) -> dict[str, Any]:
-        """Contents of results.json."""
-        return self.analysis.results
-
-    @property
-    def excluding(self) -> frozenset[str]:
-        """Codes of the quality flags that exclude an experiment."""
-        return self.analysis.campaign.excluding
-
-
-@dataclass(frozen=True, slots=True)
 class FigureImage:
     """A figure with alternative text, caption as HTML, and address of its image; a ``wide`` one scrolls."""
 
@@ -95,12 +72,28 @@ class FigureImage:
     wide: bool
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Numbers:
+    """Analysis of a campaign with a choice, its verdicts, and the report's key results and tables as HTML.
+
+    key_results, tables: by language, the tables also by name.
+    figures: images by language, as many as are drawn so far; None for a figure without data.
+    drawing: held while a figure is drawn.
+    key: name of the analysis in the folder of reports.
+    """
+
+    analysis: Analysis
+    verdicts: tuple[Message, ...]
+    key_results: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    tables: dict[str, dict[str, str]] = field(default_factory=dict)
+    figures: dict[str, list[FigureImage | None]] = field(default_factory=dict)
+    drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    key: str = field(default_factory=lambda: secrets.token_hex(8))
+
+
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Sentence why there is no analysis, with a line for each error in the files.
-
-    Unlike an exception it can be sent between processes.
-    """
+    """Sentence why there is no analysis, with a line for each error in the files."""
 
     said: str
     errors: tuple[str, ...] = ()
@@ -179,27 +172,13 @@ MOST_CHOICES: Final = 4
 """Maximum numbers of campaigns, and of choices for each, in memory: those of a day's work."""
 
 
-@dataclass(eq=False)
-class CachedAnalysis:
-    """Analysis of one choice of the user, identified by `key`.
-
-    figures: images by language, as many as are drawn so far; None for a figure without data.
-    drawing: held while a figure is drawn.
-    """
-
-    key: str
-    numbers: Numbers
-    figures: dict[str, list[FigureImage | None]] = field(default_factory=dict)
-    drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
-
-
 class CampaignSource:
     """One state of a campaign in memory with its analyses; its reports are in a folder that is deleted with it."""
 
     def __init__(self, lab: Lab, kind: str, id_: str) -> None:
         self._lab, self._kind, self._id = lab, kind, id_
         self.files = files_in_memory(lab, kind, id_)
-        self._computed = OrderedDict[Choice, CachedAnalysis]()
+        self._computed = OrderedDict[Choice, Numbers]()
         self._computing = asyncio.Lock()
 
     @cached_property
@@ -217,11 +196,11 @@ class CampaignSource:
         for name, content in self.files.contents.items():
             (folder / name).write_bytes(content)
 
-    def cached(self, choice: Choice) -> CachedAnalysis | None:
+    def cached(self, choice: Choice) -> Numbers | None:
         """Analysis of a choice if it was computed before."""
         return self._computed.get(choice)
 
-    async def analysed(self, choice: Choice) -> CachedAnalysis | Refusal:
+    async def analysed(self, choice: Choice) -> Numbers | Refusal:
         """Analysis of a choice, from the cache or computed now."""
         async with self._computing:
             if (cached := self.cached(choice)) is not None:
@@ -229,10 +208,10 @@ class CampaignSource:
             outcome = await run.io_bound(analyse_files, self.files, choice)
             if not isinstance(outcome, Numbers):
                 return outcome or Refusal(Message("The lab is about to end."))
-            self._computed[choice] = result = CachedAnalysis(secrets.token_hex(8), outcome)
+            self._computed[choice] = outcome
             while len(self._computed) > MOST_CHOICES:
                 self._computed.popitem(last=False)
-            return result
+            return outcome
 
 
 class AnalysisCache:
@@ -283,11 +262,11 @@ class AnalysisCache:
             )
         return counts[id_]
 
-    async def figures(self, analysed: CachedAnalysis, language: str) -> AsyncIterator[FigureImage]:
+    async def figures(self, numbers: Numbers, language: str) -> AsyncIterator[FigureImage]:
         """Figures in order, each as soon as it is drawn, also by another page."""
-        numbers, drawn = analysed.numbers, analysed.figures.setdefault(language, [])
+        drawn = numbers.figures.setdefault(language, [])
         for number in range(N_FIGURES):
-            async with analysed.drawing:
+            async with numbers.drawing:
                 if number == len(drawn):
                     drawn.append(await self._worker.do(figure, numbers.analysis, number, language))
             shown = drawn[number]

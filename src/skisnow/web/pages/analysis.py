@@ -79,8 +79,8 @@ async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -
         await page.settled.wait()
     if page is None or page.subject is None or page.analysed is None:
         return None
-    language, numbers = language_of_request(request), page.analysed.numbers
-    out = page.subject.place / f"report-{page.analysed.key}-{language}"
+    language, numbers = language_of_request(request), page.analysed
+    out = page.subject.place / f"report-{numbers.key}-{language}"
     if not (out / "results.json").is_file():  # written last
         await worker.do(write_whole_report, numbers.analysis, str(out), language)
     return out

@@ -410,16 +410,16 @@ def numbers(choice: Choice, files: dict[str, str] | None = None) -> Numbers:
 
 
 def flags(found: Numbers, kind: str = "penetration") -> dict[str, list[str]]:
-    return {row["experiment"]: row["flags"] for row in found.results[kind]["experiments"]}
+    return {row["experiment"]: row["flags"] for row in found.analysis.results[kind]["experiments"]}
 
 
 def test_what_always_excludes_goes_with_every_choice() -> None:
-    assert numbers(Choice()).excluding == frozenset(
+    assert numbers(Choice()).analysis.campaign.excluding == frozenset(
         {"zero_depth", "cancelled", "too_few_loads", "loads_not_rising", "depth_shrinks"}
     )
     found = numbers(Choice(frozenset({"layered"})))
-    assert found.excluding == frozenset({"zero_depth", "cancelled", "layered"})
-    assert [row["used"] for row in found.results["penetration"]["experiments"]] == [True] * 4 + [False]
+    assert found.analysis.campaign.excluding == frozenset({"zero_depth", "cancelled", "layered"})
+    assert [row["used"] for row in found.analysis.results["penetration"]["experiments"]] == [True] * 4 + [False]
     assert list(FLAGS) == [code for code in FLAGS if code not in ("zero_depth", "cancelled")]
 
 
