@@ -7,7 +7,7 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 from .._support.errors import FieldDataError, SkisnowError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS
@@ -41,7 +41,7 @@ def build_parser() -> argparse.ArgumentParser:
         description="From field tests of a ski slope to snow parameters, and from those to what a ski does on it.",
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
+    commands: Any = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     for add_command in (
         beginning.add_new, campaign.add_import, campaign.add_check, campaign.add_analyse, store.add_parser,

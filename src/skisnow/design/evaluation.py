@@ -62,10 +62,7 @@ class Evaluator:
     def points(self, z: FloatArray) -> tuple[CarveDerivatives, ...]:
         """Refined equilibria at all conditions.
 
-        Raises
-        ------
-        SolverError
-            The ski is impossible, or has no equilibrium.
+        Raises SolverError: the ski is impossible, or has no equilibrium.
         """
         place = z.tobytes()
         if place not in self._points:
@@ -177,17 +174,8 @@ def carve_at(
 ) -> CarveDerivatives | None:
     """Refined equilibrium of a question for this ski on this snow; None: not converged."""
     return differentiable_carve(
-        ski,
-        snow,
-        edge_angle=math.radians(question.edge_angle_deg),
-        load=question.load_N,
-        unloading_ratio=question.unloading_ratio,
-        moment=question.moment_Nm,
-        clamp_length=question.clamp_length_m,
-        side_force_bending=question.side_force_bending,
-        side_force_spread=question.side_force_spread,
-        moment_balance=question.moment_balance,
-        twist=question.twist,
-        elements=question.elements,
-        near=near,
-    )
+        ski, snow, edge_angle=math.radians(question.edge_angle_deg), load=question.load_N,
+        unloading_ratio=question.unloading_ratio, moment=question.moment_Nm, clamp_length=question.clamp_length_m,
+        side_force_bending=question.side_force_bending, side_force_spread=question.side_force_spread,
+        moment_balance=question.moment_balance, twist=question.twist, elements=question.elements, near=near,
+    )  # fmt: skip

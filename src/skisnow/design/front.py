@@ -70,10 +70,7 @@ def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: i
 def write_front(front: Sequence[FrontPoint], folder: Path) -> tuple[Path, ...]:
     """Write ``front.csv`` and ``front.json``; returns their paths.
 
-    Raises
-    ------
-    OutputError
-        A file cannot be written, or a ``front.csv`` is not from an earlier front.
+    Raises OutputError: a file cannot be written, or a ``front.csv`` is not from an earlier front.
     """
     rows = [["first_percent", "second_percent", *front[0].values]]
     rows += [

@@ -38,26 +38,16 @@ _POINTS: Final = 801
 class Measured:
     """Known values of a ski, in SI; None: not known.
 
-    Attributes
-    ----------
-    name, tables, mapped
-        Name of the ski, its files, and the user's statements about their headings.
-    stations_from
-        Where the stations of the tables count from: tip, tail or boot.
-    boot
-        Distance of the boot from the tail (m); None: in the middle of the sidecut length (modelling assumption).
-    length, running_length, sidecut_length
-        As in a ski file (m).
-    radius
-        Of the sidecut (m), from which the sidecut length follows.
-    widths
-        Of tip, waist and tail (m), where no table has widths.
-    mass
-        (kg).
-    like
-        Ski from which the rest is taken.
-    dial_step, angle_step
-        Step of the gauge of a bend test (m) and of a torsion test (rad): standard uncertainty step/√12.
+    name, tables, mapped: name of the ski, its files, and the user's statements about their headings.
+    stations_from: where the stations of the tables count from: tip, tail or boot.
+    boot: distance of the boot from the tail (m); None: in the middle of the sidecut length (modelling assumption).
+    length, running_length, sidecut_length: as in a ski file (m).
+    radius: of the sidecut (m), from which the sidecut length follows.
+    widths: of tip, waist and tail (m), where no table has widths.
+    mass: mass of one ski (kg).
+    like: ski from which the rest is taken.
+    dial_step, angle_step: step of the gauge of a bend test (m) and of a torsion test (rad): standard uncertainty
+        step/√12.
     """
 
     name: str
@@ -98,10 +88,7 @@ class MeasuredSki:
 def measured_ski(measured: Measured) -> MeasuredSki:
     """Make a ski.
 
-    Raises
-    ------
-    ParameterError
-        A table cannot be read, or something is needed that is not known.
+    Raises ParameterError: a table cannot be read, or something is needed that is not known.
     """
     return _SkiMaker(measured).made()
 
@@ -304,22 +291,12 @@ def stiffness_of_tests(
 ) -> Stiffness:
     """EI or GJ from tests about stations.
 
-    Parameters
-    ----------
-    station, span
-        Middle and length of each test (m), stations falling.
-    compliance, error
-        Deflection over load (m/N) or twist over moment (rad/(N m)), and its standard error.
-    bend
-        True for three-point bend tests, False for torsion tests.
+    station, span: middle and length of each test (m), stations falling.
+    compliance, error: deflection over load (m/N) or twist over moment (rad/(N m)), and its standard error.
+    bend: True for three-point bend tests, False for torsion tests.
+    Raises ParameterError: two tests have the same station, or the tests contradict each other: a compliance would be
+        below 0.
 
-    Raises
-    ------
-    ParameterError
-        Two tests have the same station, or the tests contradict each other: a compliance would be below 0.
-
-    Examples
-    --------
     >>> ends = np.array([0.2, -0.2]), np.array([0.3, 0.3])
     >>> stiffness_of_tests(*ends, np.full(2, 0.3**3 / 48 / 250), np.zeros(2), bend=True).value.round(2)
     array([250., 250.])

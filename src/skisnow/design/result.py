@@ -47,16 +47,10 @@ class Start:
 class DesignRow:
     """An output at a condition, None where it does not exist.
 
-    Attributes
-    ----------
-    condition, output
-        Number of the condition, from 1; name.
-    before, after, rounded
-        Of the ski to begin with, the design and the rounded design.
-    change_percent
-        Of the design against before.
-    half_interval
-        Half the 95 % interval that the snow's intervals give, to first order.
+    condition, output: number of the condition, from 1; name.
+    before, after, rounded: of the ski to begin with, the design and the rounded design.
+    change_percent: of the design against before.
+    half_interval: half the 95 % interval that the snow's intervals give, to first order.
     """
 
     condition: int
@@ -138,10 +132,7 @@ class Design(Shown):
     def write(self, folder: str | Path) -> tuple[Path, ...]:
         """Write ``ski.toml`` (9 digits), ``ski-rounded.toml``, ``table.csv`` and ``design.json``; returns their paths.
 
-        Raises
-        ------
-        OutputError
-            A file cannot be written.
+        Raises OutputError: a file cannot be written.
         """
         folder, names = Path(folder), ("ski.toml", "ski-rounded.toml", "table.csv", "design.json")
         prepare_folder(folder)

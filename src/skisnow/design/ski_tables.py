@@ -87,10 +87,7 @@ class Mapped:
 def read_ski_table(path: Path, mapped: Mapped) -> dict[str, FloatArray]:
     """Columns of the first table of a file, in the units of their names, without blank rows and unknown headings.
 
-    Raises
-    ------
-    ParameterError
-        No column is known, a unit is neither named nor stated, or a cell is not a number.
+    Raises ParameterError: no column is known, a unit is neither named nor stated, or a cell is not a number.
     """
 
     def count(cells: Sequence[str]) -> int:
@@ -117,9 +114,8 @@ def _read_columns(
         for row in range(header + 1 + has_units, len(sheet.rows))
         if sheet.cell(row, places["station_mm"]) and not sheet.cell(row, 0).startswith("#")
     ]
-    mark = decimal_mark(
-        [[sheet.cell(row, place) for row in rows for place in places.values()]], separator=sheet.separator
-    )
+    cells = [sheet.cell(row, place) for row in rows for place in places.values()]
+    mark = decimal_mark([cells], separator=sheet.separator)
     columns = {}
     for name, place in places.items():
         heading = sheet.cell(header, place, filled=True)
@@ -155,12 +151,7 @@ def _read_number(path: Path, sheet: Sheet, row: int, place: int, mark: str, fact
             "{path}, {sheet}, cell {letters}{row}: {cell!r} is not a number within ±{largest:g}. Correct it or leave "
             "it blank."
         ).tag(
-            "not_a_number",
-            path=path,
-            sheet=sheet.name,
-            letters=column_letters(place),
-            row=row + 1,
-            cell=cell,
+            "not_a_number", path=path, sheet=sheet.name, letters=column_letters(place), row=row + 1, cell=cell,
             largest=_LARGEST,
-        )
+        )  # fmt: skip
     return value

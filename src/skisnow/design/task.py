@@ -13,7 +13,6 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
 from .._support.user_files import read_toml
 from ..carving.answer import asked_snow
@@ -24,13 +23,18 @@ from ..ski import Ski
 from ..ski.editing import shape_parameters
 from ..ski.file_keys import LISTS
 from ..ski.ski_file import Sources
-from .variables import COMBINED, Variable, combined_names
+from .variables import COMBINED, Variable
 
 FEWEST_STARTS: Final = 8
 """Starts of the search: a worst case over contact with snow has several local optima."""
 INTERVALS: Final = "intervals"
 """Key of a condition that also counts at the ends of its snow's intervals."""
 _LISTED: Final = ("edge_angle_deg", "load_N", "published")
+_KINDS: Final[dict[str, tuple[type[Any], type[Any]]]] = {
+    "ski": (str, str), "variables": (dict, str), "conditions": (list, dict), "goals": (list, dict),
+    "constraints": (list, dict), "monotone": (list, str),
+}  # fmt: skip
+"""Type of the value of each key that is no number, and of its items."""
 _WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest", *SKI_FACTORS)
 
 
@@ -97,18 +101,11 @@ class Constraint:
 class DesignTask:
     """A checked task.
 
-    Attributes
-    ----------
-    ski
-        The ski to begin with.
-    variables
-        Variables in the order of the file.
-    conditions
-        Questions of a carve, one for each combination of the listed edge angles, loads and snows.
-    goals, constraints
-        As in the file.
-    starts, seed
-        Number of starts of the search, the first at the ski itself; seed of the others.
+    ski: the ski to begin with.
+    variables: variables in the order of the file.
+    conditions: questions of a carve, one for each combination of the listed edge angles, loads and snows.
+    goals, constraints: as in the file.
+    starts, seed: number of starts of the search, the first at the ski itself; seed of the others.
     """
 
     ski: Ski
@@ -116,8 +113,8 @@ class DesignTask:
     conditions: tuple[CarveQuestion, ...]
     goals: tuple[Goal, ...]
     constraints: tuple[Constraint, ...] = ()
-    starts: int = FEWEST_STARTS
-    seed: int = 1
+    starts: Annotated[int, Quantity("starts", "number of searches"), Allowed(1.0)] = FEWEST_STARTS
+    seed: Annotated[int, Quantity("seed", "seed of the searches but the first"), Allowed(0.0)] = 1
     sources: Sources = field(default_factory=Sources)
 
 
@@ -138,27 +135,24 @@ def read_design(path: str | Path) -> DesignTask:
 
 def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) -> DesignTask:
     """Check a task of the form of DESIGN.toml."""
-    keys = ("ski", "variables", "conditions", "goals", "constraints", "monotone", "starts", "seed")
-    for name in values:
-        if name not in keys:
-            _refuse(
-                Message("unknown: {name}. {allowed}", name=name, allowed=suggest_and_list(name, keys)), "unknown_name"
+    numbers = checked_table(DesignTask, values, "task", further=_KINDS)
+    for name, (kind, item) in _KINDS.items():
+        value: Any = values.get(name)
+        if not value and name not in ("constraints", "monotone"):
+            raise ParameterError("{name} is missing. Add it, as on the page docs/files/ski.md.").tag(
+                "missing", name=name
             )
-    for name in ("ski", "variables", "conditions", "goals"):
-        if not values.get(name):
-            _refuse(Message("{name} is missing. Add it, as on the page docs/files/ski.md.", name=name), "missing")
-    _require_tables(values)
+        if value and not (isinstance(value, kind) and all(isinstance(each, item) for each in value)):
+            raise ParameterError("{name} is {value}. Write it as on the page docs/files/ski.md.").tag(
+                "wrong_kind", name=name, value=value
+            )
     sources = sources or Sources()
-    ski, _ = sources.ski(str(values["ski"]))
+    ski, _ = sources.ski(values["ski"])
     if ski.keys is None:
-        _refuse(
-            Message(
-                "the ski {ski} has a table or a shape file. A design changes keys of a ski file: give lengths, widths "
-                "and lists of stiffness as keys.",
-                ski=ski.name,
-            ),
-            "no_keys",
-        )
+        raise ParameterError(
+            "the ski {ski} has a table or a shape file. A design changes keys of a ski file: give lengths, widths "
+            "and lists of stiffness as keys."
+        ).tag("no_keys", ski=ski.name)
     tables = enumerate(values["conditions"], start=1)
     conditions = tuple(
         itertools.chain.from_iterable(_read_conditions(n, table, ski.name, sources) for n, table in tables)
@@ -173,35 +167,9 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
         conditions=conditions,
         goals=goals,
         constraints=tuple(constraints),
-        starts=_require_whole_number("starts", values.get("starts", FEWEST_STARTS), 1),
-        seed=_require_whole_number("seed", values.get("seed", 1), 0),
         sources=sources,
+        **numbers,
     )
-
-
-def _require_tables(values: Mapping[str, Any]) -> None:
-    """Check that each key has a value of its kind."""
-    variables, monotone = values["variables"], values.get("monotone", [])
-    if not isinstance(variables, dict):
-        _refuse(Message("variables is {value}. Write it as a table: [variables].", value=variables), "wrong_kind")
-    if not isinstance(monotone, list) or not all(isinstance(name, str) for name in monotone):
-        _refuse(Message('monotone is {value}. Write a list, such as ["EI_N_m2"].', value=monotone), "wrong_kind")
-    for name in ("conditions", "goals", "constraints"):
-        tables = values.get(name, [])
-        if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-            _refuse(Message("{name} is {value}. Write tables: [[{name}]].", name=name, value=tables), "wrong_kind")
-
-
-def _refuse(problem: Message, code: str) -> None:
-    raise ParameterError(problem).tag(code)
-
-
-def _require_whole_number(name: str, value: object, lowest: int) -> int:
-    if not isinstance(value, int) or isinstance(value, bool) or value < lowest:
-        raise ParameterError("{name} is {value}. Allowed: a whole number from {lowest}.").tag(
-            "out_of_range", name=name, value=value, lowest=lowest
-        )
-    return value
 
 
 def _require_variable(place: str, ski: Ski, name: str) -> None:
@@ -213,14 +181,10 @@ def _require_variable(place: str, ski: Ski, name: str) -> None:
         )
 
 
-def _read_variable(ski: Ski, name: str, bounds: object) -> Variable:
+def _read_variable(ski: Ski, name: str, bounds: Any) -> Variable:
     _require_variable("variables", ski, name)
-    if (
-        not isinstance(bounds, list | tuple)
-        or len(bounds) != 2
-        or not all(map(_is_number, bounds))
-        or bounds[0] >= bounds[1]
-    ):
+    is_pair = isinstance(bounds, list | tuple) and len(bounds) == 2 and all(map(_is_number, bounds))
+    if not is_pair or bounds[0] >= bounds[1]:
         raise ParameterError(
             "variables: {name} is {value}. Allowed: a lower and a higher bound, such as [64, 72]."
         ).tag("out_of_range", name=name, value=bounds)
@@ -245,13 +209,12 @@ def _read_questions(table: Mapping[str, Any], ski: str, sources: Sources) -> lis
     table = dict(table)
     over_intervals = table.pop(INTERVALS, False)
     if not isinstance(over_intervals, bool):
-        _refuse(Message("{name} is true or false.", name=INTERVALS), "wrong_kind")
+        raise ParameterError("{name} is true or false.").tag("wrong_kind", name=INTERVALS)
     for name in table:
         if name not in CARVE_KEYS or name in _WITHOUT:
             allowed = [INTERVALS, *(key for key in CARVE_KEYS if key not in _WITHOUT)]
-            _refuse(
-                Message("unknown key {name}. {allowed}", name=name, allowed=suggest_and_list(name, allowed)),
-                "unknown_name",
+            raise ParameterError("unknown key {name}. {allowed}").tag(
+                "unknown_name", name=name, allowed=suggest_and_list(name, allowed)
             )
     lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
     questions = [
@@ -269,22 +232,14 @@ def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQues
     ends = [(end, snow.failure_shear_stress) for end in snow.snow_hardness_interval or ()]
     ends += [(snow.snow_hardness, end) for end in snow.failure_shear_stress_interval or ()]
     if not ends:
-        _refuse(
-            Message("the snow has no intervals. Give results of a campaign, or leave {name} out.", name=INTERVALS),
-            "no_intervals",
+        raise ParameterError("the snow has no intervals. Give results of a campaign, or leave {name} out.").tag(
+            "no_intervals", name=INTERVALS
         )
-    numbers = replace(question, published=None, results=None, site=None)
-    return [
-        question,
-        *(
-            replace(
-                numbers,
-                H_V_N_per_mm3=hardness / N_PER_MM3,
-                S_f_N_per_mm2=None if stress is None else stress / N_PER_MM2,
-            )
-            for hardness, stress in ends
-        ),
-    ]
+    own = replace(question, published=None, results=None, site=None)
+    stresses = [None if stress is None else stress / N_PER_MM2 for _, stress in ends]
+    hardnesses = [hardness / N_PER_MM3 for hardness, _ in ends]
+    pairs = zip(hardnesses, stresses, strict=True)
+    return [question, *(replace(own, H_V_N_per_mm3=hardness, S_f_N_per_mm2=stress) for hardness, stress in pairs)]
 
 
 def _read_goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
@@ -317,23 +272,17 @@ def _read_goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
 
 def _read_constraint(number: int, table: Mapping[str, Any], ski: Ski) -> Constraint:
     place = f"constraints, {number}"
-    terms = table.get("terms")
-    limits = {name: table[name] for name in ("at_least", "at_most") if name in table}
-    sound = (
-        isinstance(terms, dict)
-        and terms
-        and all(isinstance(term, str) for term in terms)
-        and all(map(_is_number, terms.values()))
-        and limits
-    )
-    if not sound or set(table) - {"terms", "at_least", "at_most"} or not all(map(_is_number, limits.values())):
+    limits = dict(table)
+    terms = limits.pop("terms", None)
+    numbers = [*terms.values(), *limits.values()] if isinstance(terms, dict) and terms else [None]
+    if not limits or limits.keys() - {"at_least", "at_most"} or not all(map(_is_number, numbers)):
         raise ParameterError(
             "{place}: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and at_least or "
             "at_most."
         ).tag("out_of_range", place=place, table=dict(table))
-    for name in terms or ():
+    for name in terms:
         _require_variable(place, ski, name)
-    return Constraint(terms=dict(terms or {}), **limits)
+    return Constraint(terms=terms, **limits)
 
 
 def _monotone(ski: Ski, key: str) -> list[Constraint]:
@@ -346,6 +295,3 @@ def _monotone(ski: Ski, key: str) -> list[Constraint]:
     return [
         Constraint(terms={f"{key}[{high + 1}]": 1.0, f"{key}[{low + 1}]": -1.0}, at_least=0.0) for low, high in pairs
     ]
-
-
-__all__ = ["Constraint", "DesignTask", "Goal", "combined_names", "design_task", "read_design"]
