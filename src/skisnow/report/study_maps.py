@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -202,7 +201,7 @@ def radius_map(table: StudyTable) -> Figure:
     table = drawn_table(table)
     panels = panels_of(table, layout)
     columns = panel_columns(table, layout, len(panels))
-    colours = _ColourScale.of(layout, table.rows)
+    scale = _colour_scale(layout, table.rows)
     rows = -(-len(panels) // columns)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (75.0 if rows == 1 else 52.0 * rows))
     values = [value for value, _ in lines_of(table.rows, layout.second)]
@@ -213,12 +212,12 @@ def radius_map(table: StudyTable) -> Figure:
         if _has_lines(layout, values):
             _draw_lines(axes, of_panel, layout, values)
         else:
-            _draw_cloud(axes, of_panel, layout, colours)
+            _draw_cloud(axes, of_panel, layout, scale)
     _set_limits(every[0], table.rows, layout)
     label_outside(every, columns, label(layout.x), Message("turn radius (m):\ncircle through boot and ±0.4 m"))
     write_caption(figure, fixed_inputs(table))
-    if colours is not None and not _has_lines(layout, values):
-        colours.bar(figure)
+    if scale is not None and not _has_lines(layout, values):
+        figure.colorbar(scale, ax=figure.axes, label=label(str(layout.second)), pad=0.01, aspect=40)
     legend_below(figure, _radius_handles(layout, values, table.rows))
     return figure
 
@@ -240,37 +239,24 @@ def _draw_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: lis
             axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **line_style)
 
 
-@dataclass(frozen=True, slots=True)
-class _ColourScale:
-    """Colour scale of the second input, for a sample or too many values for lines."""
-
-    name: str
-    ends: tuple[float, float]
-
-    @classmethod
-    def of(cls, layout: MapLayout, rows: Sequence[Json]) -> _ColourScale | None:
-        """Scale of a layout; None if no second number varies."""
-        values = [] if layout.second is None else [row[layout.second] for row in rows]
-        if layout.second is None or isinstance(values[0], str | bool):
-            return None
-        return cls(layout.second, (min(values), max(values)))
-
-    def bar(self, figure: Figure) -> None:
-        """Draw the colour scale."""
-        scale = ScalarMappable(Normalize(*self.ends), "cividis")
-        figure.colorbar(scale, ax=figure.axes, label=label(self.name), pad=0.01, aspect=40)
+def _colour_scale(layout: MapLayout, rows: Sequence[Json]) -> ScalarMappable | None:
+    """Colours of the second input, for a sample or too many values for lines; None if no second number varies."""
+    values = [] if layout.second is None else [row[layout.second] for row in rows]
+    if not values or isinstance(values[0], str | bool):
+        return None
+    return ScalarMappable(Normalize(min(values), max(values)), "cividis")
 
 
-def _draw_cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, colours: _ColourScale | None) -> None:
+def _draw_cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, scale: ScalarMappable | None) -> None:
     for holds, marker in ((True, "o"), (False, "X")):
         chosen = [row for row in rows if row["holds"] is holds]
         x, y = _numbers(chosen, layout.x), _numbers(chosen, RADIUS)
-        if colours is None:
+        if scale is None:
             axes.scatter(x, y, color=BLUE, marker=marker, s=12, linewidths=0)
         else:
-            low, high = colours.ends
-            shade = _numbers(chosen, colours.name)
-            axes.scatter(x, y, c=shade, vmin=low, vmax=high, cmap="cividis", marker=marker, s=12, linewidths=0)
+            shade = _numbers(chosen, str(layout.second))
+            low, high = scale.get_clim()
+            axes.scatter(x, y, c=shade, vmin=low, vmax=high, cmap=scale.cmap, marker=marker, s=12, linewidths=0)
 
 
 def _draw_sidecut(axes: Axes, rows: Sequence[Json]) -> None:

@@ -131,12 +131,12 @@ def test_the_band_is_that_of_statsmodels() -> None:
     y = 0.1 + 3e-4 * x + rng.normal(0.0, 0.05, 25)
     peer = OLS(y, add_constant(x)).fit()
     row = {"b": peer.params.tolist(), "rmse_dof": math.sqrt(peer.mse_resid)}
-    line = regression_line(row, x)
-    frame = peer.get_prediction(add_constant(line.x)).summary_frame()
+    places, mean, low, high = regression_line(row, x)
+    frame = peer.get_prediction(add_constant(places)).summary_frame()
     # both are a dozen double-precision operations
-    assert line.y == pytest.approx(frame["mean"].to_numpy(), rel=1e-10)
-    assert line.low == pytest.approx(frame["mean_ci_lower"].to_numpy(), rel=1e-10)
-    assert line.high == pytest.approx(frame["mean_ci_upper"].to_numpy(), rel=1e-10)
+    assert mean == pytest.approx(frame["mean"].to_numpy(), rel=1e-10)
+    assert low == pytest.approx(frame["mean_ci_lower"].to_numpy(), rel=1e-10)
+    assert high == pytest.approx(frame["mean_ci_upper"].to_numpy(), rel=1e-10)
 
 
 def test_sites_differ_by_symbol_and_many_share_one(data: ReportData) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -36,23 +35,10 @@ _ANGLE: Final = Message("edge angle $\\vartheta$ (°)")
 _STRESS: Final = Message("failure shear stress $S_\\mathrm{{f}}$ (N/mm²)")
 
 
-@dataclass(frozen=True)
-class RegressionLine:
-    """A regression line and the 95 % band of its mean over the range of the predictor.
+def regression_line(row: Json, predictor: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """x, y = b₀ + b₁ x, and the ends of y ± t rmse_dof √(1/n + (x − x̄)²/Σ(x − x̄)²), at 61 places.
 
-    The band is NaN if the regression has fewer than three values.
-    """
-
-    x: FloatArray
-    y: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-
-def regression_line(row: Json, predictor: FloatArray) -> RegressionLine:
-    """b₀ + b₁ x ± t rmse_dof √(1/n + (x − x̄)²/Σ(x − x̄)²) at 61 places.
-
-    row: the regression in the results.
+    row: the regression in the results. The band is NaN if it has fewer than three values.
     predictor: the values of its predictor, shape (n,), in its unit.
     """
     x = np.linspace(float(predictor.min()), float(predictor.max()), 61)
@@ -60,17 +46,19 @@ def regression_line(row: Json, predictor: FloatArray) -> RegressionLine:
     mean, n = float(predictor.mean()), len(predictor)
     spread = float(np.sum((predictor - mean) ** 2))
     if n < 3 or row["rmse_dof"] is None:
-        unknown = np.full_like(x, np.nan)
-        return RegressionLine(x, y, unknown, unknown)
+        return x, y, np.full_like(x, np.nan), np.full_like(x, np.nan)
     factor = float(expanded_factor(n - 2.0, CONFIDENCE))
     half_width = factor * row["rmse_dof"] * np.sqrt(1.0 / n + (x - mean) ** 2 / spread)
-    return RegressionLine(x, y, y - half_width, y + half_width)
+    return x, y, y - half_width, y + half_width
 
 
-def draw_line(axes: Axes, line: RegressionLine, *, colour: str, x_unit: float = 1.0, dashed: bool = False) -> None:
-    """Draw a line over its band; `x_unit` is the unit of the axis in that of the predictor."""
-    axes.fill_between(line.x / x_unit, line.low, line.high, color=colour, alpha=0.15, linewidth=0.0, zorder=1)
-    axes.plot(line.x / x_unit, line.y, color=colour, linewidth=1.1, linestyle="--" if dashed else "-", zorder=2)
+def _draw_line(
+    axes: Axes, row: Json, predictor: FloatArray, *, colour: str, x_unit: float = 1.0, dashed: bool = False
+) -> None:
+    """Draw a regression line over its band; `x_unit` is the unit of the axis in that of the predictor."""
+    x, y, low, high = regression_line(row, predictor)
+    axes.fill_between(x / x_unit, low, high, color=colour, alpha=0.15, linewidth=0.0, zorder=1)
+    axes.plot(x / x_unit, y, color=colour, linewidth=1.1, linestyle="--" if dashed else "-", zorder=2)
 
 
 def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
@@ -116,8 +104,7 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
     for style, mask in masks(styles, site):
         for row in rows:
             if row["group"] in style.sites and _is_significant(row):
-                line = regression_line(row, theta[mask & (site == row["group"])])
-                draw_line(plot.axes, line, colour=style.colour, x_unit=DEGREE)
+                _draw_line(plot.axes, row, theta[mask & (site == row["group"])], colour=style.colour, x_unit=DEGREE)
     _angle_axis(plot.axes)
     plot.start_at_zero("y", stress, 1.08)
     judgements = "; ".join(map(_p_value_text, rows[:MOST_SENTENCES]))
@@ -206,7 +193,7 @@ def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | L
     plot.draw(density, stress, tests.site[finite])
     row = data.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
     if row is not None:
-        draw_line(plot.axes, regression_line(row, density), colour=BLACK, dashed=not _is_significant(row))
+        _draw_line(plot.axes, row, density, colour=BLACK, dashed=not _is_significant(row))
     plot.start_at_zero("y", stress, 1.08)
     caption = prose("Failure shear stress S_f against density (the paper's Fig. 10), by site.")
     caption += _line_in_words(row) if row else ""
