@@ -58,8 +58,7 @@ def prepare_figure(place: Path | None) -> None:
 
 PAUSE_S: Final = 0.5
 _COUNTED: Final = re.compile(r"(\d+) of (\d+)\b")
-PAUSE_OF_LINES_S: Final = 10.0
-"""Where no line can be rewritten, such as in a log."""
+PAUSE_OF_LINES_S: Final = 10.0  # where no line can be rewritten, such as in a log
 LINES_AT_ONCE: Final = "SKISNOW_PROGRESS_LINES"
 """Environment variable: for a program that reads them, lines come as often as a terminal's."""
 
@@ -235,8 +234,7 @@ def report_interrupt(stopped: KeyboardInterrupt, place: Path) -> int:
     return 143 if ended else 130
 
 
-STATUS: Final = 70
-"""Exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h."""
+STATUS: Final = 70  # exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h
 
 
 def report_failure(error: Exception) -> int:

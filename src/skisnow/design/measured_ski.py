@@ -30,8 +30,7 @@ from ..ski.ski_file import read_ski
 from ..ski.table_file import StationTable
 from .ski_tables import BEND_TEST, TORSION_TEST, Mapped, read_ski_table
 
-_POINTS: Final = 801
-"""Of the integral over a span: the error is below 10⁻⁵."""
+_POINTS: Final = 801  # of the integral over a span: the error is below 10⁻⁵
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -47,8 +47,7 @@ _BY_WORD: Final = {
     )
 }
 _MOST_BYTES: Final = 1 << 22
-_LARGEST: Final = 1e7
-"""Size of a number that no ski has, in the units of the columns."""
+_LARGEST: Final = 1e7  # size of a number that no ski has, in the units of the columns
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,10 +25,8 @@ from ..ski.file_keys import LISTS
 from ..ski.ski_file import Sources
 from .variables import COMBINED, Variable
 
-FEWEST_STARTS: Final = 8
-"""Starts of the search: a worst case over contact with snow has several local optima."""
-INTERVALS: Final = "intervals"
-"""Key of a condition that also counts at the ends of its snow's intervals."""
+FEWEST_STARTS: Final = 8  # starts of the search: a worst case over contact with snow has several local optima
+INTERVALS: Final = "intervals"  # key of a condition that also counts at the ends of its snow's intervals
 _LISTED: Final = ("edge_angle_deg", "load_N", "published")
 _KINDS: Final[dict[str, tuple[type[Any], type[Any]]]] = {
     "ski": (str, str), "variables": (dict, str), "conditions": (list, dict), "goals": (list, dict),

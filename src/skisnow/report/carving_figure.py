@@ -25,8 +25,7 @@ _PANELS: Final = (
     ("bending_mm", Message("deflection (mm)")),
     ("twist_deg", Message("twist (°)")),
 )
-BOOT_REACH: Final = 0.4
-"""Distance (m) before and behind the boot at which the first circle meets the edge line."""
+BOOT_REACH: Final = 0.4  # distance (m) before and behind the boot at which the first circle meets the edge line
 _BOOT_CIRCLE: Final = (0, (4, 1.5))
 _CHORD_CIRCLE: Final = (0, (1, 1))
 

@@ -16,8 +16,7 @@ from ..ski import Ski
 from .formatting import significant
 
 _NOTHING: Final = (np.zeros(0), np.zeros(0))
-POINTS: Final = 31
-"""Points of a curve: the chords of a parabola deviate by 1/3600 of its height, less than a pixel."""
+POINTS: Final = 31  # points of a curve: the chords of a parabola deviate by 1/3600 of its height, less than a pixel
 
 
 @dataclass(frozen=True, slots=True)

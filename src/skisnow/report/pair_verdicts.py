@@ -19,10 +19,8 @@ from ..track.track import Track
 Json = dict[str, Any]
 RADII: Final = ("turn_radius_boot_m", "turn_radius_boot_other_spread_m", "turn_radius_chord_m", "turn_radius_median_m")
 """Definitions of the radius of a carved turn, that of the verdict first."""
-_SAME: Final = 5e-4
-"""Relative difference below which two numbers count as equal: they are computed no better."""
-_SAME_TIME: Final = 5e-3
-"""Difference (s) of two runs below which they count as equally fast."""
+_SAME: Final = 5e-4  # relative difference below which two numbers count as equal: they are computed no better
+_SAME_TIME: Final = 5e-3  # difference (s) of two runs below which they count as equally fast
 
 
 def ski_verdict(first: Mapping[str, Any], other: Mapping[str, Any], names: tuple[str, str]) -> Message:

@@ -26,10 +26,8 @@ MOST_LINES: Final = 7
 MOST_COLUMNS: Final = 5
 _LOG_FROM: Final = 20.0
 _CROWDED: Final = 4  # columns, from which neighbours' axis labels would touch
-_CAPTION_LETTERS: Final = 125
-"""Maximum length of a line of the caption, including the markup of symbols."""
-_LETTERS: Final = 105
-"""Maximum length of a title over the whole width of a figure."""
+_CAPTION_LETTERS: Final = 125  # maximum length of a line of the caption, including the markup of symbols
+_LETTERS: Final = 105  # maximum length of a title over the whole width of a figure
 
 
 @dataclass(frozen=True, slots=True)

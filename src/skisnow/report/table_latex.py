@@ -16,13 +16,10 @@ PACKAGES: Final = (
 )  # fmt: skip
 """LaTeX packages that a document with such tables loads."""
 ROWS_ON_A_PAGE: Final = 45
-_COLUMNS_UPRIGHT: Final = 6
-"""A long table with more columns is printed in landscape."""
-_LETTERS_UPRIGHT: Final = 115
-"""A table with longer lines is rotated by 90° (A4 has about 85 characters in a line)."""
+_COLUMNS_UPRIGHT: Final = 6  # a long table with more columns is printed in landscape
+_LETTERS_UPRIGHT: Final = 115  # a table with longer lines is rotated by 90° (A4 has about 85 characters in a line)
 _LONGEST_TEXT: Final = 30
-_TEXT_WIDTH: Final = "45mm"
-"""Width of a column with longer texts, which are wrapped."""
+_TEXT_WIDTH: Final = "45mm"  # width of a column with longer texts, which are wrapped
 _ALIGNED: Final = ("number", "count", "angle", "hundredths")
 """Kinds of single numbers, which siunitx aligns at the decimal point."""
 _COMMAND: Final = re.compile(r"\\[A-Za-z]+|[{}$]")

@@ -60,8 +60,7 @@ class OpenAnalysis:
     """Set while the result, or the reason of its absence, belongs to the choice."""
 
 
-DIFFERENCES: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)
-"""Differences that the user can choose from."""
+DIFFERENCES: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)  # differences that the user can choose from
 
 
 class AnalysisView:

@@ -39,8 +39,7 @@ from .subprocesses import Worker
 from .transfer import files_in_memory
 
 LEFT_OUT: Final = Message("excluded by choice in the lab")
-N_FIGURES: Final = len(DRAWERS) + 2
-"""Maximum number of figures: also those of recordings."""
+N_FIGURES: Final = len(DRAWERS) + 2  # maximum number of figures: also those of recordings
 SHOWN_TABLES: Final = (
     "sites", "published_relations", "snow_micro_pen", "models", "model_tests", "regressions",
     "penetration_experiments", "shear_experiments",

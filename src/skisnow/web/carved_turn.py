@@ -25,8 +25,7 @@ from .widgets import STYLES, ChartLine, LineChart, add_ski_table, save_buttons
 from .words import number_text, said
 
 ALONG: Final = Message("Along the ski (m), boot = 0")
-ENDS: Final = (Message("tail"), Message("tip"))
-"""Texts at the ends of the axis; stations count forward from the boot."""
+ENDS: Final = (Message("tail"), Message("tip"))  # texts at the ends of the axis; stations count forward from the boot
 PANELS: Final = {
     "edge_depth_mm": Message("Depth of the edge (mm)"),
     "force_per_length_N_per_m": Message("Normal force per length (N/m)"),
@@ -67,12 +66,9 @@ MOVED: Final = """(event) => {
 }"""
 """JavaScript handler: if the server drew the slider again, it would jump back during a quick movement."""
 COMPUTING: Final = Message("Computing …")
-PATIENCE_S: Final = 0.5
-"""Time (s) after which the page shows that the results belong to older positions of the sliders."""
-ABOVE_MM: Final = 3.0
-"""Height above the snow that the chart of depths shows (mm)."""
-HEADLINE: Final = "turn_radius_boot_m"
-"""Key of the main result; the other results are in the table."""
+PATIENCE_S: Final = 0.5  # time (s) after which the page shows that the results belong to older positions of the sliders
+ABOVE_MM: Final = 3.0  # height above the snow that the chart of depths shows (mm)
+HEADLINE: Final = "turn_radius_boot_m"  # key of the main result; the other results are in the table
 DESIGNED: Final = Message("the designed ski")
 """Word for the ski of a question that gives keys of a ski file instead of a word."""
 

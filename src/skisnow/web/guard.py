@@ -204,11 +204,9 @@ def _limit_body(receive: Receive, most_bytes: int) -> Receive:
 
 TOKEN_PATH: Final = "/token"
 _LONGEST: Final = 2000
-_WAIT_S: Final = 0.5
-"""Delay after a wrong token (s) against guessing."""
+_WAIT_S: Final = 0.5  # delay after a wrong token (s) against guessing
 TRIES: Final = 10
-WITHIN_S: Final = 60.0
-"""Period (s) for `TRIES` attempts of one address."""
+WITHIN_S: Final = 60.0  # period (s) for `TRIES` attempts of one address
 _MOST_ADDRESSES: Final = 10_000
 
 _PAGE: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{token} · skisnow</title>

@@ -26,8 +26,7 @@ from .words import replaced, typed_number
 
 TRACKS_FOLDER: Final = "tracks"
 ABOUT: Final = "about.json"
-LARGEST_TRACK_BYTES: Final = 20_000_000
-"""Maximum size of a track: an hour at 100 points per second as GPX."""
+LARGEST_TRACK_BYTES: Final = 20_000_000  # maximum size of a track: an hour at 100 points per second as GPX
 MOST_POINTS: Final = 20_000
 MOST_TRACKS: Final = 200
 LONGEST_WAIT_S: Final = 36_000.0
@@ -223,8 +222,7 @@ def number_of(text: str, words: str) -> float | None:
 
 COURSES_FOLDER: Final = "courses"
 COURSE_SUFFIXES: Final = (".csv", ".gpx")
-LARGEST_COURSE_BYTES: Final = 1_000_000
-"""Maximum size of a course: ten thousand gates."""
+LARGEST_COURSE_BYTES: Final = 1_000_000  # maximum size of a course: ten thousand gates
 MOST_COURSES: Final = 200
 
 

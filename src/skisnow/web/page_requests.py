@@ -37,8 +37,7 @@ ASK_FOR_ROW: Final = "() => lab.ask(emit, 'row')"
 ENTER: Final = "(event) => lab.enter(event, emit)"
 DRAW_ANEW: Final = "() => lab.drawAnew(emit)"
 ONWARD: Final = "(event) => lab.onward(event)"
-LONGEST: Final = 200
-"""Maximum length of a request key."""
+LONGEST: Final = 200  # maximum length of a request key
 
 
 @dataclass(frozen=True, slots=True)

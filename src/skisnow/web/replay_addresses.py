@@ -37,8 +37,7 @@ LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
 GATES: Final = f"{LIST}/gates"
 TURNS: Final = f"{LIST}/turns"
-TRACK_FILES: Final = {TURNS_FILE: "text/csv", GPX_FILE: "application/gpx+xml"}
-"""Media type of each file of a track."""
+TRACK_FILES: Final = {TURNS_FILE: "text/csv", GPX_FILE: "application/gpx+xml"}  # media type of each file of a track
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"

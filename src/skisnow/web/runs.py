@@ -306,13 +306,10 @@ def new_name(what: str, time_utc: datetime) -> str:
     return f"{time_utc:%Y-%m-%d-%H%M%S}-{re.sub(r'[^A-Za-z0-9-]', '-', what)}-{secrets.token_hex(2)}"
 
 
-SLOWNESS: Final = 1.0
-"""Ratio of computing time to simulated time before the first run (laptop of 2025)."""
-AROUND_S: Final = 8.0
-"""Time for start, files and report before the first run (s)."""
+SLOWNESS: Final = 1.0  # ratio of computing time to simulated time before the first run (laptop of 2025)
+AROUND_S: Final = 8.0  # time for start, files and report before the first run (s)
 LOOKED_AT: Final = 5
-_NEVER_S: Final = 1e9
-"""Maximum simulated time (s) with an estimate."""
+_NEVER_S: Final = 1e9  # maximum simulated time (s) with an estimate
 
 
 def duration_words(seconds: float) -> str:

@@ -21,8 +21,7 @@ OFF: Final = "false"
 _OF_FILES: Final = re.compile(r'"|\b[a-z]+_[a-z]+\b|omit |default: ')
 """Clauses of a meaning about keys of a file, which do not apply to a form."""
 _NUMBER: Final = re.compile(r"[-+−]?\d*[.,]?\d*(e[-+−]?\d+)?")
-_DIGITS: Final = 6
-"""Significant digits of a value in a field."""
+_DIGITS: Final = 6  # significant digits of a value in a field
 
 
 def field_label(key: Quantity) -> str:

@@ -136,8 +136,7 @@ class _AnnouncingServer(uvicorn.Server):
             self._begun()
 
 
-ALL_ADDRESSES: Final = ("0.0.0.0", "::")
-"""Hosts that mean all addresses of this machine."""
+ALL_ADDRESSES: Final = ("0.0.0.0", "::")  # hosts that mean all addresses of this machine
 IN_CLEAR: Final = (
     "The traffic is not encrypted, nor is the token: anybody in the same network can read both. Use "
     "a private network, such as this machine's hotspot, or give --certificate."
@@ -186,10 +185,8 @@ def lines_for_others(addresses: list[str], *, secure: bool) -> Iterator[str]:
     yield ENCRYPTED if secure else IN_CLEAR
 
 
-HEAD_S: Final = 20.0
-"""Maximum time for the head of a request (s), from the connection or the first byte."""
-BODY_S: Final = 120.0
-"""Maximum time for the next part of a body (s)."""
+HEAD_S: Final = 20.0  # maximum time for the head of a request (s), from the connection or the first byte
+BODY_S: Final = 120.0  # maximum time for the next part of a body (s)
 HEAD_BYTES: Final = 65_536
 
 

@@ -9,14 +9,11 @@ from typing import Final
 from ..campaign.store import Store
 
 MEGABYTE: Final = 1_000_000
-STALL_S: Final = 60.0
-"""Maximum time without an answer of browser or server before the connection is closed (s)."""
+STALL_S: Final = 60.0  # maximum time without an answer of browser or server before the connection is closed (s)
 PING_EVERY_S: Final = 10.0
 PING_WAIT_S: Final = STALL_S + 15.0
-RECONNECT_S: Final = 120.0
-"""Time that a page is kept after its connection was lost (s)."""
-BUILD_S: Final = 2.0 * STALL_S
-"""Maximum time to build a page (s)."""
+RECONNECT_S: Final = 120.0  # time that a page is kept after its connection was lost (s)
+BUILD_S: Final = 2.0 * STALL_S  # maximum time to build a page (s)
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,8 +31,7 @@ FOLDER: Final = "studies"
 FIGURE: Final = "map.svg"
 PARTIAL: Final = f"{TABLE}.partial"
 _IN_USE: Final = "is being written by another run"
-_AGAIN_S: Final = 3.0
-"""Time (s) before a new attempt: a process of an earlier server ends at its next progress message."""
+_AGAIN_S: Final = 3.0  # time (s) before a new attempt: a process of an earlier server ends at its next progress message
 
 
 class Studies(Runs):
@@ -199,8 +198,7 @@ def _without_folder(folder: Path, message: str) -> str:
     return replaced(message, {str(folder / STUDY): STUDY, f"{folder}/": ""})
 
 
-CARVE_S: Final = 0.03
-"""Time of a carved turn (s, laptop of 2025)."""
+CARVE_S: Final = 0.03  # time of a carved turn (s, laptop of 2025)
 
 
 def unit_s(of: str, values: Mapping[str, Any]) -> float:

@@ -21,12 +21,10 @@ from .layout import sentence
 from .scenario_fields import field_label, typed_form, with_point
 from .words import number_text, replaced, said, typed_number
 
-CARVE: Final = "carved-turn"
-"""Subject of a study of carved turns, instead of the name of a scenario."""
+CARVE: Final = "carved-turn"  # subject of a study of carved turns, instead of the name of a scenario
 STUDY: Final = "study.toml"
 TABLE: Final = "table.csv"
-MOST_POINTS: Final = 10_000
-"""Maximum number of points of a study in the lab, whose page draws all of them."""
+MOST_POINTS: Final = 10_000  # maximum number of points of a study in the lab, whose page draws all of them
 
 
 @dataclass(frozen=True, slots=True)

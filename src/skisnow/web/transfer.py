@@ -98,8 +98,7 @@ def write_campaign(lab: Lab, kind: str, id_: str, folder: Path) -> None:
 
 
 FOLDER: Final = "imports"
-_SAVED: Final = "saved:"
-"""Before the name of a saved template, to distinguish it from ids of campaigns."""
+_SAVED: Final = "saved:"  # before the name of a saved template, to distinguish it from ids of campaigns
 ENDINGS: Final = (".xlsx", ".xlsm", ".csv", ".txt", ".tsv")
 
 

@@ -32,8 +32,7 @@ STYLES: Final = (
     {"colour": "#8b96a1", "dash": "", "width": 1, "point": 6, "read": False},
 )
 """Colour, dashes, width of a line and of a point in pixels, and whether values are shown at the pointer."""
-BEHIND: Final = 3
-"""Style of lines in the background."""
+BEHIND: Final = 3  # style of lines in the background
 
 
 @dataclass(frozen=True, slots=True)

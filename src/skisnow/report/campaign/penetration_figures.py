@@ -37,8 +37,7 @@ from ..formatting import p_equals, prose, whole
 from .data import Json, ReportData, numbers, pairs, texts
 from .series_tables import count_resolved_offsets
 
-MOST_SERIES: Final = 40
-"""Maximum number of series in one panel of Fig 5."""
+MOST_SERIES: Final = 40  # maximum number of series in one panel of Fig 5
 _THRESHOLD_MM: Final = 0.1
 _HARDNESS: Final = Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")
 

@@ -24,8 +24,7 @@ from .data import Json, ReportData, numbers
 
 SIGNIFICANT: Final = 0.05
 MOST_SENTENCES: Final = 6
-FRICTION: Final = 0.2
-"""Transverse friction of the thin machining curve, as in the paper's figure."""
+FRICTION: Final = 0.2  # transverse friction of the thin machining curve, as in the paper's figure
 _CURVES: Final = (
     (0.0, 1.6, Message("machining, β = 0")),
     (FRICTION, 0.7, Message("β = arctan {friction}", friction=FRICTION)),

@@ -35,13 +35,11 @@ from .data import Json, ReportData, TextArray, numbers, pairs
 MOST_SITES: Final = 40
 _ROW_MM: Final = 4.6
 _TWO_LINES_MM: Final = 7.4
-_LINE: Final = 15
-"""Longest line of a site's name; with many sites a name has one line."""
+_LINE: Final = 15  # longest line of a site's name; with many sites a name has one line
 _MANY_SITES: Final = 24
 _TICKS: Final = 4
 _MARGIN_MM: Final = 22.0
-_GOLDEN_SHARE: Final = 0.618034
-"""Its multiples spread points evenly across a row without a random number."""
+_GOLDEN_SHARE: Final = 0.618034  # its multiples spread points evenly across a row without a random number
 _SITES: Final = (
     ("H_V_N_per_mm3", Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")),
     ("S_f_N_per_mm2", Message("failure shear stress $S_\\mathrm{{f}}$ (N/mm²)")),
@@ -113,8 +111,7 @@ def _panel(
     letters.spines["right"].set_visible(False)
 
 
-MOST_DRAWN: Final = 24
-"""Recordings that stay legible in one figure; the first ones are drawn."""
+MOST_DRAWN: Final = 24  # recordings that stay legible in one figure; the first ones are drawn
 _PANELS: Final = (
     ("force", Message("force (N)")),
     ("snow_density", Message("density (kg/m³)")),

@@ -17,8 +17,7 @@ Json = dict[str, Any]
 
 MOST_PAIRS: Final = 3
 """Pairs that each have a sentence; of more pairs, only those that are not certain have one, up to this number."""
-PERCENT_TO: Final = 3.0
-"""Ratio from which a difference is given as a multiple instead of in percent."""
+PERCENT_TO: Final = 3.0  # ratio from which a difference is given as a multiple instead of in percent
 _SITES: Final = {
     "H_V": (
         template("{a} is harder than {b} by {percent:.0f} %{interval}"),

@@ -22,10 +22,8 @@ from ...simulation.run_summary import run_gates
 from ...track.course import CourseResult
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
-STRETCHED: Final = 5.0
-"""Ratio of length to width of a course above which both axes have different scales."""
-SINGLE_POLE: Final = 1.5
-"""Drawn length (m) of the line of a gate without an outer pole."""
+STRETCHED: Final = 5.0  # ratio of length to width of a course above which both axes have different scales
+SINGLE_POLE: Final = 1.5  # drawn length (m) of the line of a gate without an outer pole
 MOST_NAMES: Final = 40
 _HEIGHT_MM: Final = 82.0
 _MARGIN: Final = 0.04

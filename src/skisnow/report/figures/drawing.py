@@ -33,8 +33,7 @@ UNDATED: Final[dict[str, dict[str, Any]]] = {
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
     "eps": {"Creator": "skisnow"},
 }
-_EPS_DPI: Final = 150
-"""Resolution of clouds of points in an EPS, which stores them as text."""
+_EPS_DPI: Final = 150  # resolution of clouds of points in an EPS, which stores them as text
 _EPS_DATE: Final = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
 
@@ -215,8 +214,7 @@ def _blend(colours: Any, alpha: float | None) -> Any:
     return rgba
 
 
-DIGITS: Final = 2
-"""Decimals of a length in points: steps of 0.01 pt are 3.5 µm on paper."""
+DIGITS: Final = 2  # decimals of a length in points: steps of 0.01 pt are 3.5 µm on paper
 _LENGTH: Final = re.compile(r"-?\d+\.\d{3,}")
 _PLACED: Final = re.compile(r' (?:d|x|y)="[^"]*"|translate\([^)]*\)')
 _PATH: Final = re.compile(r' d="[^"]*"')

@@ -17,8 +17,7 @@ from .drawing import FORMS, UNDATED, Drawing, Picture, render
 from .figure_data import figure_data
 from .style import journal_style, local_axes
 
-Progress: TypeAlias = Callable[[str], None]
-"""Callback for progress messages."""
+Progress: TypeAlias = Callable[[str], None]  # callback for progress messages
 
 
 def silent(_message: str) -> None:
@@ -56,8 +55,7 @@ def render_pictures(drawings: Iterable[Drawing], *, progress: Progress = silent)
     return pictures
 
 
-PNG_WIDTH: Final = 1200
-"""Width of a PNG in pixels."""
+PNG_WIDTH: Final = 1200  # width of a PNG in pixels
 SUFFIXES: Final = (".png", ".svg", ".pdf", ".csv")
 
 

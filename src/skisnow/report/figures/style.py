@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 MM_PER_INCH: Final = 25.4
 SINGLE_MM: Final = 85.0
 DOUBLE_MM: Final = 180.0
-RASTERISE_FROM: Final = 2000
-"""Number of points above which a cloud is an image inside the SVG."""
+RASTERISE_FROM: Final = 2000  # number of points above which a cloud is an image inside the SVG
 MOST_POINTS: Final = 40_000
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"

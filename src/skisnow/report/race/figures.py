@@ -101,8 +101,7 @@ def _handle(colour: str, marker: str, size: float, label: str) -> Line2D:
     return Line2D([], [], color=colour, marker=marker, markersize=size, linestyle="none", label=label)
 
 
-MOST_NAMES = 26
-"""Maximum number of gate names on the axis; of more gates, every k-th has its name."""
+MOST_NAMES = 26  # maximum number of gate names on the axis; of more gates, every k-th has its name
 
 
 def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Drawing]:

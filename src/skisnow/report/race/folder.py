@@ -75,8 +75,7 @@ def _write_gaps(worth: Worth, gates: Sequence[str], folder: Path, own: str) -> N
 
 
 GAPS_CSV: Final = "gate_gaps.csv"
-FILES: Final = (GAPS_CSV, *(f"gate_gaps.{form}" for form in FORMS))
-"""Files that `write_gaps` can write."""
+FILES: Final = (GAPS_CSV, *(f"gate_gaps.{form}" for form in FORMS))  # files that `write_gaps` can write
 _TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
 
 

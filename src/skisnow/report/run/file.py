@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 CONVENTIONS: Final = "CF-1.11"
-MISSING: Final = 9.969209968386869e36
-"""Fill value of the NetCDF library for missing doubles."""
+MISSING: Final = 9.969209968386869e36  # fill value of the NetCDF library for missing doubles
 SKI_NAMES: Final = ("left", "right")
 _LETTERS: Final = 5
 
@@ -328,8 +327,7 @@ def _balance() -> list[RunVariable]:
     ]
 
 
-SKIER_VARIABLES: Final = tuple(_balance())
-"""Further variables of a run with a skier."""
+SKIER_VARIABLES: Final = tuple(_balance())  # further variables of a run with a skier
 
 
 def variables_of(run: Run) -> tuple[RunVariable, ...]:

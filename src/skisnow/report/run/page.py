@@ -29,8 +29,7 @@ FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 FURTHER: Final = ("course", "balance", "boots")
 """Names of the further figures of a run with a course, a skier, or moving boots."""
 _OF_SKIER: Final = {"balance": Message("Balance of the skier"), "boots": Message("Boots")}
-REPLAY: Final = "replay.html"
-"""Name of the file with the replay."""
+REPLAY: Final = "replay.html"  # name of the file with the replay
 
 
 def replay_fact() -> Markup:
@@ -222,8 +221,7 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
     ]  # fmt: skip
 
 
-_UNITS: Final = {"m": " m", "mm": " mm", "s": " s", "N": " N", "kg": " kg"}
-"""Unit of a number by the end of its name."""
+_UNITS: Final = {"m": " m", "mm": " mm", "s": " s", "N": " N", "kg": " kg"}  # unit of a number by the end of its name
 
 
 def _number_in_words(name: str, value: float) -> str:

@@ -38,8 +38,7 @@ from ..figures.style import (
 from ..formatting import significant
 from .track_figure import SKI_COLOURS, SKIS
 
-_TIMES_MEDIAN: Final = 3.0
-"""Ratio of a radius to the median above which it is not drawn."""
+_TIMES_MEDIAN: Final = 3.0  # ratio of a radius to the median above which it is not drawn
 
 
 def run_motion(run: Run) -> Figure:

@@ -23,29 +23,23 @@ from ...scenario import Plane
 from ...simulation.run import Run
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
-SKI_COLOURS: Final = (BLUE, VERMILLION)
-"""Colours of the left and the right ski."""
+SKI_COLOURS: Final = (BLUE, VERMILLION)  # colours of the left and the right ski
 SKIS: Final = (Message("left ski"), Message("right ski"))
 _GROOVES: Final = (
     Message("groove of the left ski, stretched across"),
     Message("groove of the right ski, stretched across"),
 )
-CUTOUT: Final = 2.0
-"""Length (m) of the enlarged part of the track."""
+CUTOUT: Final = 2.0  # length (m) of the enlarged part of the track
 _MARGIN: Final = 0.6
 _LARGEST_MM, _SMALLEST_MM = 130.0, 32.0
-_PLAN_MM: Final = DOUBLE_MM - 22.0
-"""Width (mm) of the plan."""
+_PLAN_MM: Final = DOUBLE_MM - 22.0  # width (mm) of the plan
 _FRAME_MM: Final = 38.0
 _DETAIL_MM: Final = 38.0
-_LEAST_REACH: Final = 2.0
-"""Minimum of half the height (mm) of the detail."""
+_LEAST_REACH: Final = 2.0  # minimum of half the height (mm) of the detail
 _SPACING: Final = 0.02
 _MOST_MARKS: Final = 16
-_HALO: Final = [withStroke(linewidth=2.2, foreground="white")]
-"""Clears the lines behind a time mark's text."""
-_LABEL_POINTS: Final = 12.0
-"""Distance of a time mark's text from the track (points)."""
+_HALO: Final = [withStroke(linewidth=2.2, foreground="white")]  # clears the lines behind a time mark's text
+_LABEL_POINTS: Final = 12.0  # distance of a time mark's text from the track (points)
 
 
 def run_track(run: Run) -> Figure:
@@ -218,13 +212,10 @@ def groove_corners(arc_length: FloatArray, aside: FloatArray, width: FloatArray,
     return np.stack([x, y], axis=2)
 
 
-STEADY: Final = 9
-"""Lines of snow over which the drawn edges of a groove are medians."""
-MARK: Final = "time mark"
-"""Group of the time marks' texts, as the artist's gid."""
+STEADY: Final = 9  # lines of snow over which the drawn edges of a groove are medians
+MARK: Final = "time mark"  # group of the time marks' texts, as the artist's gid
 _POINT_MM: Final = 25.4 / 72.0
-_LETTER: Final = 0.62
-"""Approximate ratio of the width of a letter to the font size."""
+_LETTER: Final = 0.62  # approximate ratio of the width of a letter to the font size
 
 
 def hide_overlapping(axes: Axes, mm_per_unit: float) -> None:

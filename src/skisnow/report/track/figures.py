@@ -27,10 +27,8 @@ _LABELS: Final = {
 _MARGIN: Final = 0.04
 _LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
 _FRAME_MM: Final = 26.0
-MOST_TURNS: Final = 40
-"""Maximum number of turns that are drawn separately."""
-MOST_DRAWN: Final = 10_000
-"""Maximum number of points of a line."""
+MOST_TURNS: Final = 40  # maximum number of turns that are drawn separately
+MOST_DRAWN: Final = 10_000  # maximum number of points of a line
 
 
 def track_map(summary: TrackSummary) -> Figure:
@@ -163,19 +161,14 @@ def _handles(summary: TrackSummary) -> list[Line2D]:
     return [*handles, Line2D([], [], color=PALE, label=Message("neither") if handles else Message("track"))]
 
 
-WALKING: Final = 2.0
-"""Speed (m/s) above which a radius is drawn: slower movement is a walk (modelling assumption)."""
+WALKING: Final = 2.0  # speed (m/s) above which a radius is drawn: slower movement is a walk (modelling assumption)
 KILOMETRE: Final = 1000.0
 """Metres in a kilometre."""
-_IN_KILOMETRES: Final = 3000.0
-"""Distance (m) above which the axis is in km."""
+_IN_KILOMETRES: Final = 3000.0  # distance (m) above which the axis is in km
 _RADII: Final = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 2000, 5000)
-_TICKS: Final = 3
-"""Maximum number of radii named on each side of the axis."""
-_SHARE_SHOWN: Final = 0.98
-"""Share of the distance in runs whose curvature is inside the axis."""
-_NEIGHBOURS: Final = 0.18
-"""Minimum distance of two named radii as a share of half the axis."""
+_TICKS: Final = 3  # maximum number of radii named on each side of the axis
+_SHARE_SHOWN: Final = 0.98  # share of the distance in runs whose curvature is inside the axis
+_NEIGHBOURS: Final = 0.18  # minimum distance of two named radii as a share of half the axis
 
 
 def track_along(summary: TrackSummary) -> Figure:

@@ -133,8 +133,7 @@ LINE_STYLES: Final[dict[str, dict[str, Any]]] = {
 }
 MOST_DRAWN: Final = 20_000
 """Maximum number of points of a line; of a longer one every k-th point and the extremes are drawn."""
-EXACTNESS: Final = 1e-6
-"""Distance (m) below which two places are equal."""
+EXACTNESS: Final = 1e-6  # distance (m) below which two places are equal
 _HIDES: Final = 20.0
 _MARGIN: Final = 0.02
 _DISTANCES_MM: Final = 58.0

@@ -21,10 +21,8 @@ from ...track.turns import Turn
 from ..formatting import aligned_rows, date_words, named_rows, plain
 
 Json = dict[str, Any]
-MOST_ROWS: Final = 40
-"""Maximum number of rows of a table; the JSON has all."""
-WIDTH: Final = 110
-"""Maximum length of a line of prose."""
+MOST_ROWS: Final = 40  # maximum number of rows of a table; the JSON has all
+WIDTH: Final = 110  # maximum length of a line of prose
 
 _RUNS_WORDS: Final = {
     "height": "A run is what descends between two lifts, from the last stop at its top to the first at its bottom; "
@@ -210,8 +208,7 @@ def track_verdict(comparison: Mapping[str, Any]) -> Message:
     )  # fmt: skip
 
 
-_ROUNDING: Final = 1e-12
-"""Largest size of a distance (m) that is an error of rounding."""
+_ROUNDING: Final = 1e-12  # largest size of a distance (m) that is an error of rounding
 
 
 def metres(value: float | None, exact: float, digits: int = 3) -> str:

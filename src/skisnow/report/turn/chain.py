@@ -120,10 +120,8 @@ class TurnChain(Shown):
         return Facts(f"from {self.campaign!r}, {self.site}", rows)
 
 
-MORE_THAN_INPUTS: Final = 3
-"""Minimum number of runs above the number of inputs for shares with an interval."""
-YIELDS: Final = 0.95
-"""Grip utilisation above which a ski side-slips; short parts at its ends can still have grip."""
+MORE_THAN_INPUTS: Final = 3  # minimum number of runs above the number of inputs for shares with an interval
+YIELDS: Final = 0.95  # grip utilisation above which a ski side-slips; short parts at its ends can still have grip
 
 
 def afterbody_depth_ratio(run: Run) -> float | None:

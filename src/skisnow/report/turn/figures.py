@@ -36,8 +36,7 @@ from ..formatting import figure_text
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 
 QUANTILES: Final = (0.05, 0.25, 0.5, 0.75, 0.95)
-FEWEST: Final = 3
-"""Runs that make a band."""
+FEWEST: Final = 3  # runs that make a band
 
 
 @dataclass(frozen=True, slots=True, eq=False)

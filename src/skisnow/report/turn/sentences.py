@@ -25,10 +25,8 @@ from .chain import (
     used_grip,
 )
 
-ALIKE: Final = 0.002
-"""Relative difference below which two numbers are called the same."""
-HELD: Final = 0.05
-"""Share of the time with side-slip up to which a ski holds its grip."""
+ALIKE: Final = 0.002  # relative difference below which two numbers are called the same
+HELD: Final = 0.05  # share of the time with side-slip up to which a ski holds its grip
 _INPUTS: Final = {
     "snow.H_V_N_per_mm3": (Message("the snow hardness H_V"), Message("further penetration tests at this site")),
     "snow.S_f_N_per_mm2": (Message("the failure shear stress S_f"), Message("further shear tests at this site")),

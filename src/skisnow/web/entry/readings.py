@@ -169,8 +169,7 @@ def faults(fields: Iterable[Field]) -> list[str]:
 
 
 FILE: Final = "penetration.csv"
-HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
-"""Columns with one value for a series."""
+HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")  # columns with one value for a series
 READING: Final = ("load_N", "depth_mm", BRANCH)
 MOST: Final = 10_000
 

@@ -253,8 +253,7 @@ def _writer_field(session: EditSession) -> ui.select | ui.input:
     return made
 
 
-MISSING_YET: Final = frozenset({"too_few_loads"})
-"""Flags of a series that is still being read."""
+MISSING_YET: Final = frozenset({"too_few_loads"})  # flags of a series that is still being read
 
 
 class LiveResults:

@@ -41,8 +41,7 @@ _NAME_OF: Final = {"tool": template("Name of tool {number}"), "plate": template(
 _LENGTH_OF: Final = {
     "tool": template("{length} of tool {number}"), "plate": template("{length} of plate {number}")
 }  # fmt: skip
-MOST_ROWS: Final = 200
-"""Maximum number of rows that are restored when a page is loaded again."""
+MOST_ROWS: Final = 200  # maximum number of rows that are restored when a page is loaded again
 SHAPE_WORDS: Final = {
     "ski": Message("piece of ski"),
     "disc": Message("disc"),

@@ -33,8 +33,7 @@ LEFT_OUT: Final = Message("excluded")
 TEXT: Final = Message("kept as text")
 IS_OPEN: Final = "(event) => emit(event.target.open)"
 _SHOWN_ROWS: Final = 4
-_READABLE: Final = 6
-"""Characters of a number with five digits and a decimal sign."""
+_READABLE: Final = 6  # characters of a number with five digits and a decimal sign
 QUESTIONS: Final = {
     "table": template("Which table begins in row {row} of the sheet {sheet}?"),
     "column": template("Which column is {heading} ({table})?"),

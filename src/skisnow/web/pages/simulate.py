@@ -32,16 +32,14 @@ COURSE_UPLOAD: Final = f"{PATH}/course"
 GIVEN: Final = "as in the scenario"
 NUMBERS: Final = ("the numbers below", Message("the numbers below"))
 GIVEN_BY_NAME: Final = ("ski.file", "course.file", "course.name", "snow.results", "snow.site", "snow.published")
-_FOR_COURSE: Final = "slalom-20-gates"
-"""First scenario after the upload of a course."""
+_FOR_COURSE: Final = "slalom-20-gates"  # first scenario after the upload of a course
 SNOW_FILE: Final = "snow.json"
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file", "course.name")
 """Keys that are set by the menus of snow, ski and course."""
 WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
 """Keys that need files on the server; they are only available on the command line."""
-_ID: Final = re.compile(r" \([0-9a-f]{12}\)")
-"""Id of a campaign in the words of its snow."""
+_ID: Final = re.compile(r" \([0-9a-f]{12}\)")  # id of a campaign in the words of its snow
 MASS: Final = "sledge.mass_kg"
 MASS_OF_SKIER: Final = Message("mass of the skier")
 BASIC: Final = (

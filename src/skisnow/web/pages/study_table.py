@@ -29,8 +29,7 @@ HERE: Final = "/study"
 FILES: Final = f"{HERE}/files"
 ALL: Final = "study.zip"
 SKI: Final = "ski"
-ROWS: Final = 200
-"""Maximum number of rows on the page; the file has all."""
+ROWS: Final = 200  # maximum number of rows on the page; the file has all
 OF_CARVES: Final = {
     "turn_radius_boot_m": Message("Carved radius (m)"),
     "side_force_N": Message("Side force (N)"),
