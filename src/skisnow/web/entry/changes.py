@@ -97,10 +97,10 @@ def ask_correction(
     if not changed:
         view.say(Message("Nothing is different."))
         return True
-    stored, nothing, lines = row[1].cells, Message("nothing"), []
-    for key, text in changed.items():
-        name, old, new = view.label(key.rpartition("/")[2]), number_text(stored.get(key, "")), number_text(text)
-        lines.append(Message("{name}: {old} becomes {new}.", name=name, old=old or nothing, new=new or nothing))
+    stored = row[1].cells
+    lines = [
+        change_words(view.label(key.rpartition("/")[2]), stored.get(key, ""), text) for key, text in changed.items()
+    ]
 
     def correct(why: str) -> bool:
         test, reading = row
@@ -117,6 +117,12 @@ def ask_correction(
     ask_reason(place, list(dict.fromkeys(lines)), act, usual=USUAL_REASON, leave=left)
     view.say(ASKED, "")
     return True
+
+
+def change_words(name: str, old: str, new: str) -> Message:
+    """The old and the new text of a cell or field."""
+    old_text, new_text = (number_text(text) or Message("nothing") for text in (old, new))
+    return Message("{name}: {old} becomes {new}.", name=name, old=old_text, new=new_text)
 
 
 def focus_button(button: ui.button) -> None:

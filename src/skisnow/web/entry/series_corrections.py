@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Final
 
 from nicegui import ui
 
-from ..._support.messages import Message, template
+from ..._support.messages import Message
 from ...campaign.store import Reading, ReplayedTest
 from ..elements import folded
 from ..page_requests import asking_button, form
 from ..words import number_text
-from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
+from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason, change_words
 from .readings import AFTER, DEPTH, ReadingField, Step, add_reading_field, checked_fields, faults, refuse, stored_depth
 from .table_view import CORRECTED, TableView
 
@@ -63,7 +62,7 @@ class SeriesCorrections:
 
         ``is_said``: the status line shows it, too.
         """
-        test, changed = self._test, self._changed()
+        changed = self._changed()
         cells = {
             step: checked_fields(self._view.form, {"depth_mm": reading.depth}) for step, reading in changed.items()
         }
@@ -75,18 +74,7 @@ class SeriesCorrections:
         if self._asked == depths and not focus:  # Enter, and then the field was left: one question is enough
             return True
         self._asked = depths
-        lines = [
-            Message(
-                "{step}: {old} mm becomes {new} mm.",
-                step=step.words,
-                old=number_text(stored),
-                new=number_text(depth),
-            )
-            for step, depth in depths.items()
-            for stored in [stored_depth(test.row_under(*step))]
-        ]
-        act = (Message("Correct it"), lambda why: self._correct(depths, why))
-        ask_reason(self._place, lines, act, usual=USUAL_REASON, leave=self._leave, focus=focus)
+        _ask_corrections(self._view, self._name, DEPTH, depths, self._readings, self._place, self._redraw, focus=focus)
         if is_said:
             self._view.say(ASKED, "")
         return True
@@ -102,18 +90,33 @@ class SeriesCorrections:
         else:
             self._view.say(LEFT_AS_IT_WAS)
 
-    def _correct(self, depths: Mapping[Step, str], why: str) -> bool:
-        is_stored = _store_corrections(self._view, self._name, DEPTH, depths, why)
+
+def _ask_corrections(
+    view: TableView, name: str, column: str, depths: Mapping[Step, str], fields: Mapping[Step, ReadingField],
+    place: ui.element, redraw: Callable[[], object], *, focus: bool = True,
+) -> None:  # fmt: skip
+    """Ask for the reason of changed depths of a series; fields get the stored depths if it is not given."""
+    test = view.test(name)
+
+    def correct(why: str) -> bool:
+        is_stored = _store_corrections(view, name, column, depths, why)
         if is_stored:
-            self._redraw()
+            redraw()
         return is_stored
 
-    def _leave(self) -> None:
-        """Restore the stored depths."""
-        for step, reading in self._changed().items():
-            reading.restore(self._test.row_under(*step))
-        self._view.say(LEFT_AS_IT_WAS)
-        self._redraw()
+    def leave() -> None:
+        for step, reading in fields.items():
+            row = view.test(name).row_under(*step)
+            if row is not None and reading.differs(row):
+                reading.restore(row)
+        view.say(LEFT_AS_IT_WAS)
+        redraw()
+
+    lines = [
+        change_words(step.field_name(column), stored_depth(test.row_under(*step), column), text)
+        for step, text in depths.items()
+    ]
+    ask_reason(place, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=leave, focus=focus)
 
 
 def _store_corrections(
@@ -126,10 +129,6 @@ def _store_corrections(
         if row is None or not view.correct(test, row.entered.sequence, {column: depth}, why, said=said):
             return False
     return True
-
-
-BECOMES: Final = template("After waiting under {load} N: {old} mm becomes {new} mm.")
-IS_EMPTIED: Final = template("After waiting under {load} N: {old} mm becomes nothing.")
 
 
 class DepthsAfterWaiting:
@@ -183,7 +182,8 @@ class DepthsAfterWaiting:
         if not _store_corrections(self._view, self._name, AFTER, new, WAITED, stored):
             return False
         if others:
-            self._ask_correction(ask, others)
+            fields = {step: self._fields[step] for step in others}
+            _ask_corrections(self._view, self._name, AFTER, others, fields, ask, self._shown)
             if not new:
                 self._view.say(ASKED, "")
         elif new:
@@ -206,27 +206,3 @@ class DepthsAfterWaiting:
             return depths
         self._view.say(Message("Not stored:"), "bad", faults(typed.values()))
         return None
-
-    def _ask_correction(self, ask: ui.element, depths: dict[Step, str]) -> None:
-        def correct(why: str) -> bool:
-            is_stored = _store_corrections(self._view, self._name, AFTER, depths, why)
-            if is_stored:
-                self._shown()
-            return is_stored
-
-        def leave() -> None:
-            for step in depths:
-                self._fields[step].restore(self._row(step))
-            self._view.say(LEFT_AS_IT_WAS)
-            self._shown()
-
-        lines = [
-            Message(
-                BECOMES if text else IS_EMPTIED,
-                load=number_text(step.load),
-                old=number_text(stored_depth(self._row(step), AFTER)),
-                new=number_text(text),
-            )
-            for step, text in depths.items()
-        ]
-        ask_reason(ask, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=leave)

@@ -106,11 +106,11 @@ def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(
     assert selected(page) == []
     why = page.field("Why")
     leave(page, "Depth under 40.5 N (mm)", "2.26")  # another number is another question
-    assert "40.5 N: 22.5 mm becomes 2.26 mm." in page.outline()
+    assert "Depth under 40.5 N (mm): 22.5 becomes 2.26." in page.outline()
     assert page.field("Why") is not why
     leave(page, "Depth under 20 N (mm)", "2.26")  # one question about both
-    lines = page.between("20 N: 1.5 mm becomes 2.26 mm.")
-    assert lines[1] == "40.5 N: 22.5 mm becomes 2.26 mm."
+    lines = page.between("Depth under 20 N (mm): 1.5 becomes 2.26.")
+    assert lines[1] == "Depth under 40.5 N (mm): 22.5 becomes 2.26."
     page.press("Correct it")
     assert entered.depths() == [("20", "2.26"), ("40.5", "2.26")]
 
@@ -250,7 +250,7 @@ def test_an_unanswered_correction_holds_what_would_lose_it(entered: Entered, act
     assert not page.sends(act, 7)
     assert page.field("Depth under 40.5 N (mm)").value == "2,25"
     assert page.focused() is page.field("Why")
-    assert "40.5 N: 22.5 mm becomes 2.25 mm." in page.outline()
+    assert "Depth under 40.5 N (mm): 22.5 becomes 2.25." in page.outline()
     assert len(changed_states(page)) == 1
     assert len(entered.history()) == 2
     page.press("Correct it")
@@ -267,7 +267,7 @@ def test_a_change_outlives_another_reading(entered: Entered) -> None:
     page.press("Store it")  # draws the series again
     assert page.field("Depth under 40.5 N (mm)").value == "2,25"
     assert len(changed_states(page)) == 1
-    assert "40.5 N: 22.5 mm becomes 2.25 mm." in page.outline()
+    assert "Depth under 40.5 N (mm): 22.5 becomes 2.25." in page.outline()
     page.press("Leave it as it was")
     assert page.field("Depth under 40.5 N (mm)").value == "22.5"
     assert changed_states(page) == []

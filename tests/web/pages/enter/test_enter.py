@@ -338,7 +338,7 @@ def test_discs_that_are_taken_off_come_after_the_loading(entered: Entered) -> No
     assert page.focused() is page.field(back("20"))
     page.shows("k_u/H_V = ")
     enter(page, name, "2.4")
-    page.shows("2.5 mm becomes 2.4 mm")
+    page.shows("2.5 becomes 2.4")
 
 
 def test_two_rejected_fields_are_listed_in_german_each_by_its_own_sentences(entered: Entered) -> None:
