@@ -60,10 +60,7 @@ class Evaluator:
         return designed_keys(self.task.ski.keys or {}, self.task.variables, self.values(z).tolist())
 
     def points(self, z: FloatArray) -> tuple[CarveDerivatives, ...]:
-        """Refined equilibria at all conditions.
-
-        Raises SolverError: the ski is impossible, or has no equilibrium.
-        """
+        """Refined equilibria at all conditions. Raises SolverError: the ski is impossible, or has no equilibrium."""
         place = z.tobytes()
         if place not in self._points:
             if len(self._points) > 15:

@@ -85,10 +85,7 @@ class MeasuredSki:
 
 
 def measured_ski(measured: Measured) -> MeasuredSki:
-    """Make a ski.
-
-    Raises ParameterError: a table cannot be read, or something is needed that is not known.
-    """
+    """Make a ski. Raises ParameterError: a table cannot be read, or something is needed that is not known."""
     return _SkiMaker(measured).made()
 
 

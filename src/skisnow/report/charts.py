@@ -11,7 +11,7 @@ from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.units import MM
 from ..campaign.records import Campaign, PenetrationTests
-from ..geometry import GeometryForm, Tool, in_form
+from ..geometry import Tool, in_form
 from ..ski import Ski
 from .formatting import significant
 
@@ -44,14 +44,12 @@ def law_of_series(
     return penetration_depth / MM, snow_hardness * volume
 
 
-def series_curves(
-    campaign: Campaign, snow_hardness: FloatArray, *, geometry: GeometryForm = "extended"
-) -> tuple[SeriesCurve, ...]:
+def series_curves(campaign: Campaign, snow_hardness: FloatArray) -> tuple[SeriesCurve, ...]:
     """Curve of each series of a campaign; ``snow_hardness`` is H_V of each series (N/m³), NaN without one."""
     tests = campaign.penetration
     if tests is None:
         return ()
-    laws = _laws(campaign, tests, snow_hardness, geometry)
+    laws = _laws(campaign, tests, snow_hardness)
     curves = []
     for index in range(len(tests)):
         series = tests.series(index)
@@ -66,7 +64,7 @@ def series_curves(
 
 
 def _laws(
-    campaign: Campaign, tests: PenetrationTests, snow_hardness: FloatArray, geometry: GeometryForm
+    campaign: Campaign, tests: PenetrationTests, snow_hardness: FloatArray
 ) -> dict[int, tuple[FloatArray, FloatArray]]:
     """Points of the law by the index of its series, computed for all series of one tool together."""
     by_tool: dict[str, list[int]] = {}
@@ -77,7 +75,7 @@ def _laws(
         angle, hardness = tests.edge_angle[chosen][:, None], snow_hardness[chosen][:, None]
         deepest = np.array([tests.series(index).penetration_depth.max() for index in chosen])[:, None]
         depths = deepest * np.linspace(0.0, 1.0, POINTS)
-        points = law_of_series(in_form(campaign.tools[name], geometry), angle, hardness, depths)
+        points = law_of_series(in_form(campaign.tools[name], "extended"), angle, hardness, depths)
         laws.update(zip(chosen, zip(*points, strict=True), strict=True))
     return laws
 

@@ -74,17 +74,17 @@ def render_template(name: str, /, **values: Any) -> str:
     """
     language = current_language()
     css = files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")
-    return page_environment(language).get_template(name).render(css=Markup(css), language=language, **values)
+    return _page_environment(language).get_template(name).render(css=Markup(css), language=language, **values)
 
 
-def page_environment(language: str, *, package: str = "skisnow.report", folder: str = "templates") -> Environment:
+def _page_environment(language: str) -> Environment:
     """Environment whose pages have ``{% trans %}``; ``{{ message }}`` and ``{{ value | text }}`` are translated."""
 
     def text(value: object) -> str:
         return translated(value, language)
 
     environment = Environment(
-        loader=PackageLoader(package, folder), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         extensions=["jinja2.ext.i18n"], finalize=lambda value: text(value) if isinstance(value, Message) else value,
     )  # fmt: skip
     environment.policies["ext.i18n.trimmed"] = True

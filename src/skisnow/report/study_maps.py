@@ -81,27 +81,10 @@ def grip_map(table: StudyTable) -> Figure:
     label_outside(every, columns, label(layout.x), ordinate)
     if layout.second is not None and not layout.sampled:
         _draw_colour_bar(figure, every)
-    write_caption(figure, "\n".join(filter(None, (fixed_inputs(table), _beyond_scale(layout, table.rows)))))
+    write_caption(figure, fixed_inputs(table))
     for axes, (_, of_panel) in zip(every, panels, strict=True):
         axes.legend(handles=_grip_handles(layout, of_panel), loc="best", fontsize=5.5, frameon=True, framealpha=0.9)
     return figure
-
-
-def _beyond_scale(layout: MapLayout, rows: Sequence[Json]) -> str:
-    """Note on points whose grip utilisation the scale does not show; "" without one."""
-    shares = np.array([share_of_limit(row) for row in rows])
-    if layout.second is None:
-        endless = int(np.isinf(shares).sum())
-        return Message("Not drawn: {count} points without shear capacity.", count=endless) if endless else ""
-    low, high = int((shares < LEVELS[0]).sum()), int((shares > LEVELS[-1]).sum())
-    notes = [
-        (low, Message("The darkest blue is every value below {limit:g}: {count} points.", limit=LEVELS[0], count=low)),
-        (
-            high,
-            Message("The darkest red is every value above {limit:g}: {count} points.", limit=LEVELS[-1], count=high),
-        ),
-    ]
-    return "" if layout.sampled else "  ".join(note for count, note in notes if count)
 
 
 def share_of_limit(row: Json) -> float:

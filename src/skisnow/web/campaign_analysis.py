@@ -231,10 +231,7 @@ class AnalysisCache:
         return entry[1] if entry is not None and entry[0] == state else None
 
     async def subject(self, kind: str, id_: str) -> CampaignSource:
-        """The campaign in its current state.
-
-        Raises StoreError: the store has no such campaign.
-        """
+        """The campaign in its current state. Raises StoreError: the store has no such campaign."""
         async with self._opening:
             if (cached := self.cached(kind, id_)) is not None:
                 self._subjects.move_to_end((kind, id_))

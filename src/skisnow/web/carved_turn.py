@@ -173,10 +173,7 @@ class CarvedTurn:
         self._cells: dict[str, list[ui.label]] = {}
 
     def asked(self) -> CarveInputs:
-        """Questions of the current inputs.
-
-        Raises ParameterError: an input is not complete; the page shows it there.
-        """
+        """Questions of the current inputs. Raises ParameterError: an input is not complete; the page shows it there."""
         raise NotImplementedError
 
     def add_sliders(self, sliders: Mapping[str, tuple[str, Sequence[str], str]]) -> None:

@@ -209,10 +209,7 @@ class SkiTexts(NamedTuple):
 
 
 def measured_text(name: str, typed: Mapping[str, str]) -> str:
-    """Text of the file of a ski with three measured widths.
-
-    Raises ParameterError: a field is empty or not a number.
-    """
+    """Text of the file of a ski with three measured widths. Raises ParameterError: a field is empty or not a number."""
     return _toml({NAME: name, "source": "measured, entered in the lab"}, {key: typed.get(key, "") for key in MEASURED})
 
 

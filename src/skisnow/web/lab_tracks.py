@@ -213,10 +213,7 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
 
 
 def number_of(text: str, words: str) -> float | None:
-    """Number from a field; None for an empty field.
-
-    Raises ParameterError: the text is not a number.
-    """
+    """Number from a field; None for an empty field. Raises ParameterError: the text is not a number."""
     return typed_number(words, text) if text.strip() else None
 
 
@@ -242,10 +239,7 @@ class LabCourses:
         return [*course_names(), *self.kept()]
 
     def change(self, name: str) -> tuple[str, str]:
-        """Key and value of a scenario for this course.
-
-        Raises ParameterError: the lab has no such course.
-        """
+        """Key and value of a scenario for this course. Raises ParameterError: the lab has no such course."""
         if name in course_names():
             return "course.name", name
         if name not in self.kept():

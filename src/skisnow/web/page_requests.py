@@ -204,10 +204,7 @@ def hidden_folder(parent: Path) -> Iterator[Path]:
 
 
 def required_id(text: str) -> str:
-    """Id of a campaign from an address.
-
-    Raises StoreError: the text is not an id.
-    """
+    """Id of a campaign from an address. Raises StoreError: the text is not an id."""
     if not _ID.fullmatch(text):
         raise StoreError("This address names no campaign; the list of campaigns names all.").tag("no_campaign")
     return text

@@ -68,10 +68,7 @@ class RunFolders:
             return name
 
     def folder_of(self, name: str) -> Path:
-        """Folder of a run; only names of `names` are accepted.
-
-        Raises ParameterError: the lab has no such run.
-        """
+        """Folder of a run; only names of `names` are accepted. Raises ParameterError: the lab has no such run."""
         if name not in self.names():
             raise ParameterError("there is no run {name!r} here. Choose one from the list").tag(
                 "unknown_run", name=name

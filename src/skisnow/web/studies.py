@@ -114,10 +114,7 @@ class Studies(Runs):
         return [(f"study/{name}", content) for name, content in files_below(folder) if name != JOB]
 
     def table(self, name: str) -> tuple[Study, StudyTable]:
-        """A study and its table.
-
-        Raises ParameterError: the study has no table yet.
-        """
+        """A study and its table. Raises ParameterError: the study has no table yet."""
         from ..studies import read_study, read_table
 
         study = read_study(self.file(name, STUDY))

@@ -236,10 +236,7 @@ class AxisFields:
         self._range.set_text(Message("Allowed: {allowed}.", allowed=self._keys[self.name].allowed) if self.name else "")
 
     def range(self) -> Range:
-        """The range typed into the fields.
-
-        Raises ParameterError: the range is not valid for the input.
-        """
+        """The range typed into the fields. Raises ParameterError: the range is not valid for the input."""
         key = self._keys[self.name]
         words = field_label(key)
         if not all(str(field_.value or "").strip() for field_ in self._ends):
@@ -264,10 +261,7 @@ class AxisFields:
         return Range(low, high, self.count(), bool(self._log.value))
 
     def count(self) -> int:
-        """Number of values; 1 without a varied input.
-
-        Raises ParameterError: the text is not an allowed number.
-        """
+        """Number of values; 1 without a varied input. Raises ParameterError: the text is not an allowed number."""
         if not self.name:
             return 1
         text = with_point(str(self._n.value or "").strip())

@@ -126,10 +126,7 @@ class FileImports:
         return id_
 
     def name(self, id_: str) -> str:
-        """Name of an uploaded file.
-
-        Raises ParameterError: no such upload waits.
-        """
+        """Name of an uploaded file. Raises ParameterError: no such upload waits."""
         place = self._folder / required_id(id_) / "name"
         if not place.is_file():
             raise ParameterError("This upload was imported already. Choose the file again.").tag("no_upload")

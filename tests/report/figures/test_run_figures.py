@@ -207,14 +207,15 @@ def test_distance_between_circles_of_one_centre() -> None:
 def test_compared_runs_are_held_against_the_first(run: Run) -> None:
     wider = circle_run(radius=1.1 * RADIUS, deep=0.01)
     with journal_style():
-        figure = draw_runs({"first": run, "wide": wider}, at=2.0)
+        figure = draw_runs({"first": run, "wide": wider})
     plan, distance, depth = axes_of(figure)
     assert len([line for line in plan.lines if len(np.asarray(line.get_xdata())) > 1]) == 2
     (curve,) = distance.lines
     assert np.asarray(curve.get_xdata())[-1] == pytest.approx(wider.run_length, rel=1e-3)
     assert "first" in distance.get_ylabel()
     now = np.asarray(depth.lines[0].get_ydata()), np.asarray(depth.lines[1].get_ydata())
-    assert now[0] == pytest.approx(run.skis.edge_depth[100, 1] * 1e3)
+    shown = int(np.argmin(abs(run.time - 0.9 * min(run.simulated_s, wider.simulated_s))))
+    assert now[0] == pytest.approx(run.skis.edge_depth[shown, 1] * 1e3)
     assert now[1] == pytest.approx(now[0] / 2.0)
     assert depth.get_ylim()[0] > 0.0 > depth.get_ylim()[1]  # depth grows downwards
     assert "right ski" in depth.get_ylabel()

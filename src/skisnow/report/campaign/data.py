@@ -184,12 +184,11 @@ class ReportData:
         )
         return ", ".join(words for count, words in counts if count)
 
-    def regression(self, response: str, predictor: str, group: str = "all") -> Json | None:
-        """Result of one regression, None if it has no data."""
-        for row in self.results["regressions"]:
-            if row["response"] == response and row["terms"][1] == predictor and row["group"] == group:
-                return row if row["b"] is not None else None
-        return None
+    def regression(self, response: str, predictor: str) -> Json | None:
+        """Result of one regression over all sites, None if it has no data."""
+        names = (response, predictor, "all")
+        rows = [row for row in self.results["regressions"] if (row["response"], row["terms"][1], row["group"]) == names]
+        return rows[0] if rows and rows[0]["b"] is not None else None
 
     @cached_property
     def dates(self) -> tuple[str, str] | None:

@@ -36,7 +36,7 @@ from ..figures.style import (
 )
 from ..formatting import figure_text, json_text, prose, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
-from .figures import coloured_map, track_along, track_map
+from .figures import coloured_map, drawn_points, track_along, track_map
 from .summary import GPX_FILE, POINTS_FILE, TITLES, TURNS_FILE, points_csv, track_gpx, turns_csv
 
 FIGURES: Final = ("map", "speed", "radius", "along", "course")
@@ -131,8 +131,6 @@ LINE_STYLES: Final[dict[str, dict[str, Any]]] = {
     "arc_length": {"color": GREEN, "linestyle": (0, (5, 1.5))},
     "time": {"color": PURPLE, "linestyle": (0, (1, 1))},
 }
-MOST_DRAWN: Final = 20_000
-"""Maximum number of points of a line; of a longer one every k-th point and the extremes are drawn."""
 EXACTNESS: Final = 1e-6  # distance (m) below which two places are equal
 _HIDES: Final = 20.0
 _MARGIN: Final = 0.02
@@ -221,16 +219,9 @@ def _draw_distances(axes: Axes, comparison: Comparison) -> None:
         axes.set_ylabel(Message("distance of the\nsimulated track (m)"))
 
 
-def _thinned(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
-    """Every k-th point of a long line, with those of the largest and smallest y of each section."""
-    step = 2 * -(-len(x) // MOST_DRAWN)
-    if len(x) <= MOST_DRAWN:
-        return x, y
-    whole = len(x) // step * step
-    sections = np.where(np.isnan(y[:whole]), -np.inf, y[:whole]).reshape(-1, step)
-    first = np.arange(0, whole, step)
-    extremes = first + sections.argmax(axis=1), first + sections.argmin(axis=1)
-    chosen = np.unique(np.concatenate([first, *extremes, [len(x) - 1]]))
+def _thinned(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Evenly spaced points of a long line."""
+    chosen = drawn_points(0, len(x) - 1)
     return x[chosen], y[chosen]
 
 

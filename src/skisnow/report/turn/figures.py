@@ -149,12 +149,8 @@ def _legend_handles(count: int) -> list[Line2D]:
 _SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")
 
 
-def draw_runs(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
-    """Draw runs by name; the first one is the reference.
-
-    runs: at least one run, all on the same slope.
-    at: time (s) at which the skis are drawn (default: 0.9 of the last time that all runs reach).
-    """
+def draw_runs(runs: Mapping[str, Run]) -> Figure:
+    """Draw runs on one slope by name, the skis at 0.9 of the last time that all reach; the first is the reference."""
     named = list(runs.items())
     limits = track_limits(np.concatenate([run.place for run in runs.values()]))
     height = plan_height_mm(limits)
@@ -166,7 +162,7 @@ def draw_runs(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
         plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=line_style(place)["color"])
     plan_axes(plan, limits, profile=not isinstance(named[0][1].scenario.slope, Plane))
     _draw_distances(figure.add_subplot(grid[1, 0]), named)
-    moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
+    moment = 0.9 * min(run.simulated_s for run in runs.values())
     _draw_depths(figure.add_subplot(grid[1, 1]), named, moment)
     legend_below(
         figure, [Line2D([], [], label=mathtext(name), **line_style(place)) for place, (name, _) in enumerate(named)]
