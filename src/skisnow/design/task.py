@@ -99,10 +99,8 @@ class Constraint:
 class DesignTask:
     """A checked task.
 
-    ski: the ski to begin with.
     variables: variables in the order of the file.
     conditions: questions of a carve, one for each combination of the listed edge angles, loads and snows.
-    goals, constraints: as in the file.
     starts, seed: number of starts of the search, the first at the ski itself; seed of the others.
     """
 

@@ -30,7 +30,6 @@ def ski_verdict(first: Mapping[str, Any], other: Mapping[str, Any], names: tuple
     of the relative changes. It is certain if the interval excludes 0 and all definitions of the radius agree.
 
     first, other: answers in the JSON of `skisnow carve`.
-    names: their names.
     """
     radii = [(first[key], other[key]) for key in RADII if first[key] is not None and other[key] is not None]
     if not radii or first[RADII[0]] is None or other[RADII[0]] is None:

@@ -24,7 +24,6 @@ class Header:
     """Head of a report.
 
     eyebrow, title: kind of report, and its title.
-    facts: names with texts.
     synthetic: sentence that the numbers were not measured (default: none).
     headline: key result as a sentence with one number and its uncertainty (default: none).
     back: address of the page of the lab that links here (default: none).

@@ -34,7 +34,6 @@ _LETTERS: Final = 105  # maximum length of a title over the whole width of a fig
 class MapLayout:
     """Names of inputs by their place in a map.
 
-    x: input along the axis.
     second: input of the lines of the radius map and of the ordinate of the grip map; None if nothing else varies.
     panels: the other inputs; of a sample only names and switches.
     sampled: True if the points are a sample instead of a grid.

@@ -241,7 +241,6 @@ def simulate_summary(summary: Json, *, title: str) -> str:
     """Outcome of a run with its numbers.
 
     summary: contents of `skisnow.simulation.run_summary.summary_dict`.
-    title: title of the scenario.
     """
     lines = [f"{title}: {summary['outcome'].replace('_', ' ')}"]
     if summary["remedy"]:

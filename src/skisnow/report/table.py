@@ -39,7 +39,6 @@ class Column:
 
     key: name in CSV, including the unit; a key of the records.
     header, unit: texts in HTML and LaTeX, with symbols as ``H_V``.
-    kind: kind of the cells.
     digits: significant digits in HTML and LaTeX; CSV has all digits.
     interval: key of the 95 % interval of an estimate.
     """

@@ -232,7 +232,6 @@ def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], further: Mapping[st
 
     uploads: names and contents of a TOML file with its table, or of a design of MonkeyCAM.
     further: typed values for a design, by the keys of `STIFFNESS`.
-    limits: limits of the upload.
     Raises ParameterError: the files do not contain exactly one ski.
     """
     with TemporaryDirectory(prefix="skisnow-ski-") as folder:

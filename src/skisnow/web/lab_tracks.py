@@ -71,8 +71,6 @@ class TrackFolders:
     ) -> str:
         """Store a track that can be read; returns its name.
 
-        content: contents of the file.
-        placing: position relative to a run.
         check: function that checks the file (default: `check_track` in this process).
         Raises ParameterError: the track is too large, there are too many, a number is not allowed, or it cannot be
             placed on a slope.

@@ -147,11 +147,8 @@ class Runs:
     ) -> Job:
         """Store a simulation at the end of the queue.
 
-        scenario: name of the scenario.
         changes: values by key as on the command line.
         files: names and contents of files by the key that gets their path; they are stored with the run.
-        given: see `Job`.
-        language: language of the report.
         title: words for the title, which get a number.
         """
         asked_at = datetime.now(UTC)

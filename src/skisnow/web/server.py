@@ -89,7 +89,6 @@ def serve(
     """Serve the lab until it is interrupted.
 
     host, port: address to listen on; port 0 selects a free port.
-    token: see `require_allowed`.
     tell: function that is called with the address when the server is ready, then with further lines on an open host.
     certificate: certificate for an encrypted connection (default: not encrypted).
     Raises ParameterError: see `require_allowed`.
@@ -148,7 +147,6 @@ def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | No
     """Addresses at which others can open the lab, those of private networks first.
 
     host, port: host and port that the server listens on.
-    secure: True with a certificate.
     own: addresses of this machine (default: those of its adapters).
 
     >>> lab_addresses("0.0.0.0", 8765, secure=False, own=["127.0.0.1", "93.184.216.34", "192.168.1.7"])

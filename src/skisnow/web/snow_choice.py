@@ -34,9 +34,6 @@ ALL_SITES: Final = ""
 class ChosenSnow:
     """A snow that was chosen by name.
 
-    snow: snow with its known intervals.
-    words: name for the reader.
-    published: name of a published snow.
     analysis, site: analysis of the campaign, and the site ("" for all sites).
     """
 

@@ -157,9 +157,7 @@ class Studies(Runs):
     def estimate_words(self, runs: Runs, points: int, method: str, unit: float) -> str:
         """Number of points and estimated time in words.
 
-        runs: runs of the lab.
         method: method of the solver; "" for a carved turn.
-        unit: see `unit_s`.
         """
         if not unit:
             return Message("{points} points.", points=points)
@@ -201,7 +199,6 @@ CARVE_S: Final = 0.03  # time of a carved turn (s, laptop of 2025)
 def unit_s(of: str, values: Mapping[str, Any]) -> float:
     """Time of a point at slowness 1 (s): one carved turn, or the simulated time of a run; 0 if unknown.
 
-    of: `CARVE` or a scenario.
     values: values of the scenario by key.
     """
     return CARVE_S if of == CARVE else simulated_s(values) or 0.0

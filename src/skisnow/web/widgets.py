@@ -171,7 +171,6 @@ class JobList:
     """Cards of all jobs of a queue, the newest first, updated every second.
 
     card: factory of the card of a job, from the queue, the job and an `Act`.
-    nothing: sentence without a job.
     """
 
     def __init__(self, runs: Any, card: Callable[[Any, Any, Act], JobCard], nothing: str) -> None:

@@ -175,7 +175,6 @@ _OF_PAGES: Final = WeakKeyDictionary[Client, str]()
 def language_asked(chosen: str | None, accepted: str) -> str:
     """Code of an available language.
 
-    chosen: language from the cookie.
     accepted: header Accept-Language of the browser, the preferred language first.
 
     >>> language_asked(None, "fr-CH, de-AT;q=0.9, en;q=0.5"), language_asked("en", "de")

@@ -54,7 +54,6 @@ class UsedTests:
 
     used: mask of the used ones among all experiments of the kind.
     value, interval: H_V or S_f, and its 95 % intervals, shape (n, 2): NaN unless both ends are finite.
-    site: names of their sites.
     density: snow density there (kg/m³), NaN if unknown.
     """
 

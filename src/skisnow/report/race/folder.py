@@ -36,7 +36,6 @@ def write_race(
 ) -> Path:
     """Write the files of a race; race.json is last: a folder with it is complete.
 
-    folder: output folder.
     checked: scores of the quickest line and of the start of the search, simulated again with the scenario's own
         settings.
     worth: variants compared with the scenario.

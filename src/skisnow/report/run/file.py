@@ -37,7 +37,6 @@ def write_run_file(
 ) -> None:
     """Write a run as a complete NetCDF-3 file.
 
-    run: result of `skisnow.simulate`.
     values: keys of the scenario with their values as in summary.json, for the global attribute ``scenario``; the
         attribute ``scenario_keys`` has their meanings and units.
     path: Path of the file; an existing file is replaced.
@@ -151,7 +150,6 @@ class RunVariable:
     """One variable of run.nc.
 
     name, dimensions, units: as in the file; units are SI in the notation of UDUNITS, angles in rad.
-    meaning: its long_name.
     source: attribute of a run, or attribute of one of its parts such as ``skis.depth``, with the array in this unit.
     component: index of the last axis of that array (default: the whole array).
     axis: "T", "X", "Y" or "Z" of a coordinate, otherwise empty.

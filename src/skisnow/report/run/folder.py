@@ -80,7 +80,6 @@ _LANGUAGE: Final = re.compile(r'<html lang="([a-z]+)">')
 def link_replay(folder: str | Path) -> Path | None:
     """Add the link to replay.html to the facts in the report of a run.
 
-    folder: folder of the run.
     Returns: Path of the changed page; None if the folder has no report of a run, or the page has the link already.
     Raises OutputError: the page cannot be read or written.
     """

@@ -102,7 +102,6 @@ def comparison_page(
     pictures: pictures of the tracks, and of the gates.
     verdict: verdict on the times of two computed runs (default: none).
     gaps: time lost from gate to gate (default: no gates in common).
-    further: sections at the end.
     back: address of the page of the lab that links here (default: none).
     """
     names = comparison["simulated"]["name"], comparison["measured"]["name"]

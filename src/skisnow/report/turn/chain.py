@@ -31,8 +31,6 @@ from .figures import FEWEST, TimedTrack, band_of, loaded_skis, offsets
 class EnsembleRun(Shown):
     """One run of an ensemble.
 
-    snow: sampled snow.
-    outcome: outcome of the run.
     track: track of the middle between the boots.
     values: sampled values by the scenario's keys, in their units.
     slips: share of the time in which the more heavily loaded ski side-slips; None if unknown.
@@ -186,11 +184,7 @@ def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[Floa
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BandShares:
-    """Share of each input of an ensemble in the variance at the end of the band, aside and ahead.
-
-    keys: keys of the varied inputs.
-    aside, ahead: shares of these inputs.
-    """
+    """Share of each input of an ensemble in the variance at the end of the band, aside and ahead."""
 
     keys: tuple[str, ...]
     aside: VarianceShares
@@ -214,12 +208,9 @@ def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandSha
 class BandInput:
     """One input of a band.
 
-    key: key of the scenario.
     spread: origin of the spread: ``measured`` by the campaign, or ``prior``.
-    distribution: name of the distribution.
     value: median in the key's unit; None for a prior.
     low, high: ends in the key's unit: of the 95 % interval of a measured input, of the whole range of a prior.
-    origin: origin of the range.
     """
 
     key: str

@@ -50,9 +50,7 @@ def ask_reason(
     """Ask for the reason of a change, inside the page.
 
     place: element that is replaced by the question.
-    lines: descriptions of the change.
     act: text of the button, and the function that is called with the reason; it returns False for a rejected change.
-    usual: prefilled reason.
     leave: function that is called when the change is not made.
     focus: True to put the focus on the reason; False if the user is on the way to another field.
     """
@@ -141,8 +139,6 @@ def changes(
 ) -> None:
     """Show the history of a test with buttons that undo its last change or cancel the test.
 
-    view, test: table and test.
-    ask: element for questions about reasons.
     changed: function that is called after a change is stored.
     is_unanswered: function that returns True, and asks for the reason again, if a typed correction is not confirmed.
     cancelled: True if the test is cancelled in its file.

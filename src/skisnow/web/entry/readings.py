@@ -177,7 +177,6 @@ MOST: Final = 10_000
 def receive_offline_readings(session: EditSession, changed: Callable[[set[str]], object]) -> None:
     """Store readings that the browser kept without a connection, each once.
 
-    session: the campaign.
     changed: function that is called with the names of the changed series.
     """
     client = ui.context.client

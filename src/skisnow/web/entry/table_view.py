@@ -32,7 +32,6 @@ CORRECTED: Final = Message("Corrected; the first reading is kept.")
 class TableView:
     """One table on a page: stores entries about its tests, and shows the outcome and the results.
 
-    session, file: campaign and table.
     form, below: names of the sections of the form and of the changes for screen readers.
     """
 
