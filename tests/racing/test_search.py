@@ -129,7 +129,7 @@ def test_it_is_never_slower_than_where_it_began() -> None:
 
 @pytest.mark.slow
 def test_five_seeds_find_the_same_time_through_four_gates() -> None:
-    """The example of docs/how-to/race.md; the first line is too tight for the ski."""
+    """The first line is too tight for the ski."""
     found = [raced(gates=4, evaluations=3000, seed=seed) for seed in range(1, 6)]
     times = [each.score.time for each in found]
     assert found[0].start_score.time is None
@@ -285,7 +285,7 @@ def test_a_run_that_ends_early_counts_by_what_is_missing() -> None:
 
 @pytest.mark.slow
 def test_four_gates_are_raced_quicker_than_by_the_follower() -> None:
-    """By the margin that docs/how-to/race.md states, with the turns alike already."""
+    """With the turns alike already."""
     pytest.importorskip("cmaes")
     found = race(RACE, gates=4, evaluations=13, seed=1)
     assert present(found.gained) > MARGIN
