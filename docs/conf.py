@@ -112,7 +112,7 @@ def _align_numbers(_app: Sphinx, doctree: Any) -> None:
                     cell["classes"].append("text-right")
 
 
-_ITEM = re.compile(r"([a-z]\w*(?:, [a-z]\w*)*|Returns|Raises \w+): (.+)")
+_ITEM = re.compile(r"([a-z]\w*(?:, [a-z]\w*)*|Returns|(?:Raises|Warns) \w+(?:, \w+)*): (.+)")
 
 
 def _short_sections(_app: Sphinx, _what: str, _name: str, _obj: object, _options: object, lines: list[str]) -> None:

@@ -42,17 +42,9 @@ class CarveAnswer:
 def answer_question(question: CarveQuestion, *, sources: Sources | None = None) -> CarveAnswer:
     """Read ski and snow and find the equilibrium.
 
-    Parameters
-    ----------
-    question
-        Checked inputs.
-    sources
-        Caches the files, for many questions.
-
-    Raises
-    ------
-    ParameterError
-        Ski or snow cannot be read, or an input does not go with the ski.
+    question: Checked inputs.
+    sources: Caches the files, for many questions.
+    Raises ParameterError: ski or snow cannot be read, or an input does not go with the ski.
     """
     sources = sources or Sources()
     ski, warned = sources.ski(question.ski)

@@ -97,17 +97,10 @@ class SnowLaws:
 def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws | None:
     """Check laws and make them ready for the core; None where none is given.
 
-    Parameters
-    ----------
-    shear, penetration
-        A `ShearLaw` and a `PointLaw`, or None.
-    edge_angle
-        Edge angle of the base under the boot (rad).
-
-    Raises
-    ------
-    ParameterError
-        An object is not such a law, two laws hold the edge, or a shear law has a thrust or no strength.
+    shear, penetration: A `ShearLaw` and a `PointLaw`, or None.
+    edge_angle: Edge angle of the base under the boot (rad).
+    Raises ParameterError: an object is not such a law, two laws hold the edge, or a shear law has a thrust or no
+        strength.
     """
     if shear is None and penetration is None:
         return None
@@ -173,17 +166,9 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
 
     The law's search for an equilibrium begins there; the equilibrium does not depend on it.
 
-    Parameters
-    ----------
-    law
-        Penetration law of a place on the snow.
-    ski, edge_angle, load
-        The ski, ϑ (rad), force along the snow normal (N).
-
-    Raises
-    ------
-    ParameterError
-        The law gives no finite pressure above 0, or lets go at once when the depth shrinks.
+    law: Penetration law of a place on the snow.
+    ski, edge_angle, load: The ski, ϑ (rad), force along the snow normal (N).
+    Raises ParameterError: the law gives no finite pressure above 0, or lets go at once when the depth shrinks.
     """
     reach = float(ski.at(0.0).width) * math.cos(edge_angle)
     place = 0.5 * np.minimum(reach, _DEPTHS / max(math.tan(edge_angle), 1e-12))[:, None] * (1.0 + _NODES)

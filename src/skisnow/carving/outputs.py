@@ -36,17 +36,11 @@ class RefinedCarve(NamedTuple):
 class OutputGrowth:
     """An output, and its derivatives by each of the numbers that it is computed from, all others held.
 
-    Attributes
-    ----------
-    value
-        The output.
-    depth, force, weight, place
-        By depth (m) and force (N/m) of the stations, their length and place (m); None: none.
-    edge_angle, load, strength
-        By ϑ (rad), load (N), S_f (N/m²).
-    edge, edge_by
-        Places of the edge line (m), and the derivatives by the ski's section there, shape (4, k): width, height of the
-        base, deflection (m), twist (rad).
+    value: The output.
+    depth, force, weight, place: By depth (m) and force (N/m) of the stations, their length and place (m); None: none.
+    edge_angle, load, strength: By ϑ (rad), load (N), S_f (N/m²).
+    edge, edge_by: Places of the edge line (m), and the derivatives by the ski's section there, shape (4, k): width,
+        height of the base, deflection (m), twist (rad).
     """
 
     value: float

@@ -23,16 +23,9 @@ from .equilibrium import ELEMENTS
 def carve_question(values: Mapping[str, object]) -> CarveQuestion:
     """Check the inputs of one question and fill in the defaults.
 
-    Parameters
-    ----------
-    values
-        Question from values by the names of `CARVE_KEYS`, in the units in the names.
-
-    Raises
-    ------
-    ParameterError
-        A key is unknown (the nearest is named), missing or outside its range, or the snow is not given in exactly one
-        way.
+    values: Question from values by the names of `CARVE_KEYS`, in the units in the names.
+    Raises ParameterError: a key is unknown (the nearest is named), missing or outside its range, or the snow is not
+        given in exactly one way.
 
     Examples
     --------
@@ -262,10 +255,7 @@ USUAL_LOADS_N: Final = (20.0, 5000.0)
 def require_clamp(ski: Ski, clamp_length_m: float) -> None:
     """Reject a clamp that is too long for the ski, with the longest allowed value.
 
-    Raises
-    ------
-    ParameterError
-        Half of the clamp reaches beyond the tip or the tail.
+    Raises ParameterError: half of the clamp reaches beyond the tip or the tail.
     """
     most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
     if clamp_length_m < most:

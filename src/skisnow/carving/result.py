@@ -147,11 +147,8 @@ class Equilibrium(Shown):
     def derivatives(self) -> CarveDerivatives:
         """Exact derivatives of outputs by parameters, at this equilibrium.
 
-        Raises
-        ------
-        ParameterError
-            There is no equilibrium; or its groove follows the path, other laws of the snow apply, or the footprint is
-            not rigid.
+        Raises ParameterError: there is no equilibrium; or its groove follows the path, other laws of the snow apply, or
+            the footprint is not rigid.
         """
         if self.request is None:
             raise ParameterError(
@@ -163,23 +160,11 @@ class Equilibrium(Shown):
     def sensitivity(self, output: str, parameters: Iterable[str]) -> tuple[Sensitivity, ...]:
         """Derivatives of an output by parameters.
 
-        Parameters
-        ----------
-        output
-            A name of `skisnow.carving.outputs.OUTPUTS`, such as ``turn_radius_boot_m``.
-        parameters
-            Such as ``ski.waist_width_mm``, ``ski.EI_N_m2[2]`` (second of the list), ``edit.sidecut_depth``,
+        output: A name of `skisnow.carving.outputs.OUTPUTS`, such as ``turn_radius_boot_m``.
+        parameters: Such as ``ski.waist_width_mm``, ``ski.EI_N_m2[2]`` (second of the list), ``edit.sidecut_depth``,
             ``snow.H_V_N_per_mm3``, ``load_N``: `derivatives` lists them.
-
-        Returns
-        -------
-        tuple of Sensitivity
-            In units per unit and in % per %, with the distance to the next kink.
-
-        Raises
-        ------
-        ParameterError
-            A name is unknown, or there are no derivatives.
+        Returns: In units per unit and in % per %, with the distance to the next kink.
+        Raises ParameterError: a name is unknown, or there are no derivatives.
 
         References
         ----------

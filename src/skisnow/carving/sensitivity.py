@@ -56,22 +56,14 @@ _OF_SHAPE: Final = [_RUNNING, _BEVEL, _BEVEL_WIDTH, _SIDE, _RADIUS]  # of the sk
 class Sensitivity:
     """Derivative of an output by a parameter.
 
-    Attributes
-    ----------
-    output, parameter
-        Names, with their units.
-    output_value, parameter_value
-        Values at the equilibrium.
-    derivative
-        Units of the output per unit of the parameter.
-    relative
-        Change of the output in % per % of the parameter; None where either is 0.
-    kink
-        Relative change of the parameter at which a station touches or leaves the snow or the groove, to first order:
+    output, parameter: Names, with their units.
+    output_value, parameter_value: Values at the equilibrium.
+    derivative: Units of the output per unit of the parameter.
+    relative: Change of the output in % per % of the parameter; None where either is 0.
+    kink: Relative change of the parameter at which a station touches or leaves the snow or the groove, to first order:
         beyond it the derivative is another.
-    one_sided
-        Where the kink is nearer than `AT_KINK`: the derivatives just below and just above the parameter; None on a side
-        without an equilibrium.
+    one_sided: Where the kink is nearer than `AT_KINK`: the derivatives just below and just above the parameter; None on
+        a side without an equilibrium.
     """
 
     output: str
@@ -137,10 +129,7 @@ class _Gradient:
 class CarveDerivatives:
     """Derivatives at one equilibrium; quantities that several outputs and parameters need are computed once.
 
-    Parameters
-    ----------
-    request
-        The request of a carve with the groove along the edge and numbers for the snow.
+    request: The request of a carve with the groove along the edge and numbers for the snow.
     """
 
     request: CarveRequest
@@ -197,10 +186,7 @@ class CarveDerivatives:
     def sensitivity(self, output: str, parameters: Iterable[str], *, kinks: bool = True) -> tuple[Sensitivity, ...]:
         """Derivatives of an output by parameters; `kinks`: whether the distances to them are computed, else infinite.
 
-        Raises
-        ------
-        ParameterError
-            An output or a parameter is unknown, or the output does not exist here.
+        Raises ParameterError: an output or a parameter is unknown, or the output does not exist here.
         """
         of_output, out = self._gradient(output).output.value, []
         values = {name: self.value(name) for name in parameters}
@@ -332,10 +318,7 @@ class CarveDerivatives:
     def derivative(self, output: str, name: str) -> float:
         """Derivative of an output by a parameter, in units of the output per unit of the parameter.
 
-        Raises
-        ------
-        ParameterError
-            As `sensitivity`.
+        Raises ParameterError: as `sensitivity`.
         """
         return float(self.derivatives(output, (name,))[0])
 

@@ -35,18 +35,12 @@ Edges: TypeAlias = Sequence[tuple[FloatArray, FloatArray]]
 class Shape:
     """Derivatives of a ski's numbers in the equations by one parameter, in SI per unit of the parameter.
 
-    Attributes
-    ----------
-    node, length
-        Nodes of the beam, and the lengths of its n elements.
-    place, sections
-        At two stations of each element: place; width and height of the base, shape (2, 2 n).
-    stiffness
-        EI and GJ at the Gauss points of each element, shape (2, n, 4).
-    numbers
-        Running length, greatest width at the stations, base bevel, edge width, angle of the side, radius of the edge.
-    moves, widens, stiffens
-        True if nodes, sections and stiffnesses depend on the parameter.
+    node, length: Nodes of the beam, and the lengths of its n elements.
+    place, sections: At two stations of each element: place; width and height of the base, shape (2, 2 n).
+    stiffness: EI and GJ at the Gauss points of each element, shape (2, n, 4).
+    numbers: Running length, greatest width at the stations, base bevel, edge width, angle of the side, radius of the
+        edge.
+    moves, widens, stiffens: True if nodes, sections and stiffnesses depend on the parameter.
     """
 
     node: FloatArray

@@ -45,18 +45,12 @@ class Conditions(NamedTuple):
 class Solution:
     """State of the ski in equilibrium, all in SI.
 
-    Attributes
-    ----------
-    converged, iterations
-        Whether Newton's method came to an end, and its iterations in all.
-    u
-        Unknowns of the beam, relative to the boot.
-    boot_depth, boot_slope
-        b₀ (m) and b₁: depth of the base's middle under the boot, and its growth along the ski.
-    shear_stress
-        τ, drawn from the snow along the edge (N/m²); by reaction: side force over the snow's force, everywhere.
-    edge_depth, force_per_length
-        At the stations: e (m), and the snow's force per length along the snow normal (N/m).
+    converged, iterations: Whether Newton's method came to an end, and its iterations in all.
+    u: Unknowns of the beam, relative to the boot.
+    boot_depth, boot_slope: b₀ (m) and b₁: depth of the base's middle under the boot, and its growth along the ski.
+    shear_stress: τ, drawn from the snow along the edge (N/m²); by reaction: side force over the snow's force,
+        everywhere.
+    edge_depth, force_per_length: At the stations: e (m), and the snow's force per length along the snow normal (N/m).
     """
 
     converged: bool
@@ -76,16 +70,11 @@ def solved(
 
     Elastic snow first, from there to the steeper unloading; where that fails, all of it on softer snow that hardens.
 
-    Parameters
-    ----------
-    model
-        The clamped ski.
-    conditions
-        Snow, load and choices.
-    offset
-        Where the groove follows a path, of the edge from that at each station (m); None: the groove follows the edge.
-    near
-        A solution that this one is thought to be close to; tried first.
+    model: The clamped ski.
+    conditions: Snow, load and choices.
+    offset: Where the groove follows a path, of the edge from that at each station (m); None: the groove follows the
+        edge.
+    near: A solution that this one is thought to be close to; tried first.
     """
     from_there = None
     if near is not None:
@@ -102,14 +91,9 @@ def refined(
 ) -> core.CarvePoint:
     """The equilibrium next to a solution, to the last digits, for derivatives: groove along the edge, no laws.
 
-    Parameters
-    ----------
-    model, conditions
-        As in `solved`.
-    near
-        Its solution.
-    places
-        Where across the groove is kept (m from the edge, rising from 0); None: where `solved` keeps it.
+    model, conditions: As in `solved`.
+    near: Its solution.
+    places: Where across the groove is kept (m from the edge, rising from 0); None: where `solved` keeps it.
     """
     border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
     return core.CarvePoint(_core_ski(model), _core_conditions(conditions), near.u, border, places)

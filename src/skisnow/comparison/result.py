@@ -57,30 +57,18 @@ class Distances(Shown):
 class FittedOffsets(Shown):
     """Fitted offsets of the simulated track, and the comparison without them.
 
-    Attributes
-    ----------
-    what
-        Names of the fitted offsets: start, heading, time.
-    moved
-        Displacement (m) of the first point, (2,) or (3,).
-    turned
-        Rotation (rad) about the vertical through the first point, positive to the left.
-    turned_error
-        Half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another heading.
-    later
-        Fitted change (s) of the simulated track's time relative to the measured one's.
-    undetermined
-        Number of undetermined directions; the track was not moved along them.
-    rms
-        Root mean square (m) of the minimised nearest distances; None if only the time was fitted.
-    rival
-        Another motion that fits nearly as well, or None.
-    before
-        Comparison without the fit.
-    slope_angle
-        Inclination (rad) by which a track was rotated onto the map before the fit; None if it was not.
-    azimuth
-        Compass direction (rad, clockwise from north) of x of the track in the slope's axes, if there is one.
+    what: Names of the fitted offsets: start, heading, time.
+    moved: Displacement (m) of the first point, (2,) or (3,).
+    turned: Rotation (rad) about the vertical through the first point, positive to the left.
+    turned_error: Half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another
+        heading.
+    later: Fitted change (s) of the simulated track's time relative to the measured one's.
+    undetermined: Number of undetermined directions; the track was not moved along them.
+    rms: Root mean square (m) of the minimised nearest distances; None if only the time was fitted.
+    rival: Another motion that fits nearly as well, or None.
+    before: Comparison without the fit.
+    slope_angle: Inclination (rad) by which a track was rotated onto the map before the fit; None if it was not.
+    azimuth: Compass direction (rad, clockwise from north) of x of the track in the slope's axes, if there is one.
     """
 
     what: tuple[str, ...]

@@ -118,38 +118,21 @@ class Analysis(Shown):
 
         The same numbers as `skisnow.read_snow` reads from results.json.
 
-        Parameters
-        ----------
-        site
-            As the campaign calls it; "C" is also its "site C". Default: all sites together.
-        unloading_ratio
-            k_u/H_V instead of the measured one: 1 is snow that springs back, 10 or more snow that keeps its grooves.
-            `Scenario.with_` takes either over.
-
-        Raises
-        ------
-        ParameterError
-            No used penetration experiment is of that site; the message names the sites that have some.
+        site: As the campaign calls it; "C" is also its "site C". Default: all sites together.
+        unloading_ratio: k_u/H_V instead of the measured one: 1 is snow that springs back, 10 or more snow that keeps
+            its grooves. `Scenario.with_` takes either over.
+        Raises ParameterError: no used penetration experiment is of that site; the message names the sites that have
+            some.
         """
         return site_snow(self.campaign, self.penetration, self.shear, site, unloading_ratio)
 
     def plot(self, what: str = "force_depth") -> Any:
         """One figure of the report.
 
-        Parameters
-        ----------
-        what
-            Name of the figure, such as "force_depth", "model_rmse", "residuals", "hardness_density" or "stress_angle".
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A new figure; no window is opened.
-
-        Raises
-        ------
-        ParameterError
-            Unknown figure (code ``unknown_figure``), or no data for it (``no_data``).
+        what: Name of the figure, such as "force_depth", "model_rmse", "residuals", "hardness_density" or
+            "stress_angle".
+        Returns: A new figure; no window is opened.
+        Raises ParameterError: unknown figure (code ``unknown_figure``), or no data for it (``no_data``).
         """
         from ..report.campaign.summary import analysis_figure
 
@@ -158,10 +141,7 @@ class Analysis(Shown):
     def report(self, folder: str | Path, *, language: str = "en") -> Path:
         """Write report.html with its figures, tables and results.json; see `skisnow.write_report`.
 
-        Returns
-        -------
-        Path
-            Path of report.html.
+        Returns: Path of report.html.
         """
         from ..report.campaign.page import write_report
 
@@ -170,15 +150,9 @@ class Analysis(Shown):
     def to_dataframe(self, kind: str = "penetration") -> Any:
         """Experiments with their results, units in the names of the columns; needs pandas (``skisnow[pandas]``).
 
-        Parameters
-        ----------
-        kind
-            "penetration" or "shear".
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row per experiment; the ends of a 95 % interval are the columns with `low` and `high` in their names.
+        kind: "penetration" or "shear".
+        Returns: One row per experiment; the ends of a 95 % interval are the columns with `low` and `high` in their
+            names.
         """
         from ..report.campaign.summary import analysis_dataframe
 
@@ -187,10 +161,7 @@ class Analysis(Shown):
     def to_xarray(self) -> Any:
         """All experiments with their results, units as attributes; needs xarray (``skisnow[xarray]``).
 
-        Returns
-        -------
-        xarray.Dataset
-            Over the dimensions ``penetration_experiment`` and ``shear_experiment``.
+        Returns: Over the dimensions ``penetration_experiment`` and ``shear_experiment``.
         """
         from ..report.campaign.summary import analysis_dataset
 

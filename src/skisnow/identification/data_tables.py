@@ -150,16 +150,10 @@ CELL_COLUMNS: Final = tuple(quantity.name for quantity in _PASSAGE if quantity.n
 class PhotoCellRun(ShownFields):
     """The passages of one run.
 
-    Attributes
-    ----------
-    name
-        Name of the run.
-    station : (n,) m
-        Distance from the start down to the cell, along the slope's surface, rising.
-    time : (n,) s
-        Time of each passage, rising.
-    time_sd : (n,) s or None
-        Standard deviation of each time; None if not stated.
+    name: Name of the run.
+    station: (n,) m, distance from the start down to the cell, along the slope's surface, rising.
+    time: (n,) s, time of each passage, rising.
+    time_sd: (n,) s or None, standard deviation of each time; None if not stated.
     """
 
     name: str
@@ -256,18 +250,11 @@ SPREADS: Final = tuple(quantity.name for quantity in _ROW[3:])
 class MeasuredGrooves(ShownFields):
     """Places along a track, (n,) each, in m.
 
-    Attributes
-    ----------
-    name
-        Name of the file.
-    depth, width
-        Depth of the remaining groove, and its width across it in the snow's surface; NaN if not measured.
-    turn_radius
-        Radius of the track, > 0 to either side; NaN if not measured.
-    depth_sd, width_sd, turn_radius_sd
-        Their standard deviations.
-    stated
-        True if the file has all standard deviations; otherwise they are the scatter of the places.
+    name: Name of the file.
+    depth, width: Depth of the remaining groove, and its width across it in the snow's surface; NaN if not measured.
+    turn_radius: Radius of the track, > 0 to either side; NaN if not measured.
+    depth_sd, width_sd, turn_radius_sd: Their standard deviations.
+    stated: True if the file has all standard deviations; otherwise they are the scatter of the places.
     """
 
     name: str

@@ -21,29 +21,17 @@ _TIMES_START: Final = 5.0
 class Parameter:
     """One parameter, in the unit that its key names.
 
-    Attributes
-    ----------
-    key
-        Full name of the scenario's key; ``KEY@RUN`` if each run has a separate value.
-    name, unit
-        Short name, and symbol of the unit.
-    start, lower, upper
-        Start of the search, and its bounds.
-    size
-        Typical size of the parameter or of its logarithm, the unit of length of the search; finite differences take
-        1 to 5 % of it.
-    logarithmic
-        True if the search uses its logarithm, for a positive quantity that spans decades; its interval is a factor.
-    prior_mean, prior_sd
-        Normal prior distribution; None without a prior.
-    free
-        False if the parameter keeps its start.
-
-    Raises
-    ------
-    ParameterError
-        A number is not finite, bounds are swapped or exclude the start, half a prior is given, a standard
-        deviation is not above 0, or a logarithmic parameter may reach 0.
+    key: Full name of the scenario's key; ``KEY@RUN`` if each run has a separate value.
+    name, unit: Short name, and symbol of the unit.
+    start, lower, upper: Start of the search, and its bounds.
+    size: Typical size of the parameter or of its logarithm, the unit of length of the search; finite differences take 1
+        to 5 % of it.
+    logarithmic: True if the search uses its logarithm, for a positive quantity that spans decades; its interval is a
+        factor.
+    prior_mean, prior_sd: Normal prior distribution; None without a prior.
+    free: False if the parameter keeps its start.
+    Raises ParameterError: a number is not finite, bounds are swapped or exclude the start, half a prior is given, a
+        standard deviation is not above 0, or a logarithmic parameter may reach 0.
 
     Examples
     --------

@@ -42,18 +42,12 @@ REASONS: dict[Outcome, str] = {
 class Identified(Shown):
     """Estimate of one parameter, in the unit that its key names; None if a number does not exist.
 
-    Attributes
-    ----------
-    parameter
-        The free parameter.
-    value, standard_error, interval
-        Best value; standard error and 95 % interval from the curvature of the sum of squares; None for an open end.
-    profile_interval, bootstrap_interval, posterior_interval
-        95 % intervals by other methods, if requested.
-    at_bound
-        True if the best value is on a bound.
-    identifiable
-        True if the data determine the parameter.
+    parameter: The free parameter.
+    value, standard_error, interval: Best value; standard error and 95 % interval from the curvature of the sum of
+        squares; None for an open end.
+    profile_interval, bootstrap_interval, posterior_interval: 95 % intervals by other methods, if requested.
+    at_bound: True if the best value is on a bound.
+    identifiable: True if the data determine the parameter.
     """
 
     parameter: Parameter
@@ -198,12 +192,8 @@ def identification_dict(identification: Identification, *, files: Iterable[Path]
 
     Its JSON Schema is that of ``skisnow schema identification``.
 
-    Parameters
-    ----------
-    identification
-        The result.
-    files
-        Input files, listed with their SHA-256.
+    identification: The result.
+    files: Input files, listed with their SHA-256.
     """
     keys = [identified.parameter.key for identified in identification.parameters]
     return {

@@ -30,17 +30,11 @@ COLUMNS: Final = (
 class LineTurn(ShownFields):
     """The turn at one gate.
 
-    Attributes
-    ----------
-    aside
-        Distance of the apex from the turning pole, to the side that is passed (m).
-    along
-        Distance of the apex from the pole down the course, over the way to the nearer neighbour: above 0 behind it.
-    turning
-        Share of half the way to the apexes before and behind over which the edges turn, 0.2 to 1: edging starts so far
-        before the apex and ends so far behind it; the rest is straight. 1: half waves.
-    speed
-        Speed to which a skier in skidded turns brakes before the apex, over `brakes_to` of the scenario.
+    aside: Distance of the apex from the turning pole, to the side that is passed (m).
+    along: Distance of the apex from the pole down the course, over the way to the nearer neighbour: above 0 behind it.
+    turning: Share of half the way to the apexes before and behind over which the edges turn, 0.2 to 1: edging starts so
+        far before the apex and ends so far behind it; the rest is straight. 1: half waves.
+    speed: Speed to which a skier in skidded turns brakes before the apex, over `brakes_to` of the scenario.
     """
 
     aside: float
@@ -56,20 +50,11 @@ NUMBERS: Final = tuple(number.name for number in fields(LineTurn))
 class RacingLine(Shown):
     """Turns with straights between them, from apex to apex.
 
-    Attributes
-    ----------
-    course
-        Its gates follow each other down the slope, x rising.
-    start
-        x, y (m) where it begins, down the slope.
-    turns
-        One for each gate.
-
-    Raises
-    ------
-    ParameterError
-        The number of turns is not that of gates, a turn is too short, or the apexes do not follow each other down the
-        slope.
+    course: Its gates follow each other down the slope, x rising.
+    start: x, y (m) where it begins, down the slope.
+    turns: One for each gate.
+    Raises ParameterError: the number of turns is not that of gates, a turn is too short, or the apexes do not follow
+        each other down the slope.
 
     Notes
     -----
@@ -242,19 +227,11 @@ def write_line(line: RacingLine, path: Path) -> None:
 def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingLine:
     """Read a line that `write_line` wrote, for the first gates of a course.
 
-    Parameters
-    ----------
-    path
-        CSV with gate, aside_m, along, turning, speed; other columns are not read.
-    course
-        Has these gates, in this order, and perhaps more behind them.
-    start
-        x, y (m).
-
-    Raises
-    ------
-    ParameterError
-        It cannot be read, a column is missing, a cell is not a number, or its gates are not the course's.
+    path: CSV with gate, aside_m, along, turning, speed; other columns are not read.
+    course: Has these gates, in this order, and perhaps more behind them.
+    start: x, y (m).
+    Raises ParameterError: it cannot be read, a column is missing, a cell is not a number, or its gates are not the
+        course's.
     """
     most = len(course.gates)
     table = csv_rows(path, COLUMNS[: 1 + len(NUMBERS)], action=Message("Write the line with `skisnow race` again."))

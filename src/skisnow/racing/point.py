@@ -36,24 +36,14 @@ SLOWEST: Final = 1e-3
 class PointRacer:
     """A point that stays on its line, whatever the line.
 
-    Attributes
-    ----------
-    slope_angle
-        Inclination of the plane (rad).
-    mass
-        (kg).
-    friction, friction_by_speed
-        μ = friction + friction_by_speed · v, of the load on the base.
-    drag
-        ρ c A/2 (kg/m).
-    speed
-        At the start (m/s).
-    least_radius
-        A tighter line cannot be skied (m); 0: any.
-    half_width
-        Width of the racer (m): both sides have to pass a gate.
-    gravity
-        (m/s²).
+    slope_angle: Inclination of the plane (rad).
+    mass: (kg).
+    friction, friction_by_speed: μ = friction + friction_by_speed · v, of the load on the base.
+    drag: ρ c A/2 (kg/m).
+    speed: At the start (m/s).
+    least_radius: A tighter line cannot be skied (m); 0: any.
+    half_width: Width of the racer (m): both sides have to pass a gate.
+    gravity: (m/s²).
 
     Notes
     -----

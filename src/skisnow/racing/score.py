@@ -21,22 +21,14 @@ ABREAST: Final = 0.45
 class Score(ShownFields):
     """Score of a line.
 
-    Attributes
-    ----------
-    value
-        Value to minimise: the time (s) if all gates are passed; else above 1000, and larger with the number of missed
-        gates, the distances from them, and the distance of the end from the last gate.
-    time
-        From the start to the last gate (s); None where it fails.
-    passed
-        Gates.
-    words
-        How it ended.
-    gates
-        Result at each gate and the time from the start (s), None where it was not crossed.
-    margins
-        Margin at each gate: distance from the nearest pole (m); below 0 if the gate was not passed.
-        None where it was not crossed.
+    value: Value to minimise: the time (s) if all gates are passed; else above 1000, and larger with the number of
+        missed gates, the distances from them, and the distance of the end from the last gate.
+    time: From the start to the last gate (s); None where it fails.
+    passed: Gates.
+    words: How it ended.
+    gates: Result at each gate and the time from the start (s), None where it was not crossed.
+    margins: Margin at each gate: distance from the nearest pole (m); below 0 if the gate was not passed. None where it
+        was not crossed.
     """
 
     value: float

@@ -38,12 +38,8 @@ WIDER: Final = 1e-3
 class Worth(Shown):
     """Times of one variant and of the scenario itself on the same snows.
 
-    Attributes
-    ----------
-    name
-        Name of the variant.
-    scores, base
-        One for each snow, the first the scenario's own; `base`: of the scenario as it is.
+    name: Name of the variant.
+    scores, base: One for each snow, the first the scenario's own; `base`: of the scenario as it is.
     """
 
     name: str
@@ -129,25 +125,14 @@ def compare_variants(
 ) -> tuple[Worth, ...]:
     """Race a scenario and variants of it on one line, on the same snows.
 
-    Parameters
-    ----------
-    scenario
-        As it is.
-    others
-        Variants by name; a change of the snow applies to each snow.
-    line
-        That all of them take.
-    snows
-        The scenario's own first, as `drawn_for_race` gives them. The skier assumes the scenario's own in skidded turns.
-    start
-        Line that the scenario as it is races on too, as the first of the results.
-    model, workers, executor, checkpoint, progress
-        As of `quickest_line`.
-
-    Raises
-    ------
-    ParameterError
-        There is no snow or no variant, or the checkpoint belongs to another comparison.
+    scenario: As it is.
+    others: Variants by name; a change of the snow applies to each snow.
+    line: That all of them take.
+    snows: The scenario's own first, as `drawn_for_race` gives them. The skier assumes the scenario's own in skidded
+        turns.
+    start: Line that the scenario as it is races on too, as the first of the results.
+    model, workers, executor, checkpoint, progress: As of `quickest_line`.
+    Raises ParameterError: there is no snow or no variant, or the checkpoint belongs to another comparison.
     """
     require_choice("model", model, get_args(RacerModel))
     if AS_IT_IS in others:
@@ -196,21 +181,11 @@ class ScoredScenario:
 def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
     """A snow, and `count` snows drawn from the uncertainty of its values: a Latin hypercube over H_V and S_f.
 
-    Parameters
-    ----------
-    snow
-        With intervals of H_V and S_f, or without.
-    count
-        Of drawn snows; 0: none.
-    spread
-        Without an interval 95 % lie between the value over 1 + spread and its 1 + spread fold.
-    seed
-        0 or more.
-
-    Raises
-    ------
-    ParameterError
-        An interval is not known and no spread is given.
+    snow: With intervals of H_V and S_f, or without.
+    count: Of drawn snows; 0: none.
+    spread: Without an interval 95 % lie between the value over 1 + spread and its 1 + spread fold.
+    seed: 0 or more.
+    Raises ParameterError: an interval is not known and no spread is given.
     """
     if count == 0:
         return [snow]

@@ -54,29 +54,20 @@ def _layers_source(layers: SnowLayers | None) -> str | None:
 class Contact:
     """Contact of skis and snow.
 
-    Attributes
-    ----------
-    snow
-        With H_V and S_f; where these vary over the place, with their means.
-    snow_map
-        H_V, S_f and friction where they vary over the place; None: they do not.
-    unloading_ratio
-        k_u/H_V ≥ 1; 1: elastic.
-    compaction_resistance
-        Whether the base's slope along the ski counts as resistance.
-    shear_displacement
-        u_y > 0 (m).
-    hardness_growth, layer_depth, lower_hardness
-        γ' ≥ 0 (1/m); depth (m) at which a lower layer begins, and its H_V (N/m³); None: one layer.
-    layers
-        Hardness of several layers over H_V instead.
-    damping, delayed_share, retardation_time
-        c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
-    friction, friction_by_speed, friction_acts_on, friction_direction
-        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); the load that it multiplies, and the direction of the force.
-    friction_law, temperature, liquid_water
-        μ over speed and snow instead of μ_0 and μ_1, which are 0 then; temperature of the snow's surface (°C), None:
-        not known; liquid water (% of the volume), None: dry.
+    snow: With H_V and S_f; where these vary over the place, with their means.
+    snow_map: H_V, S_f and friction where they vary over the place; None: they do not.
+    unloading_ratio: k_u/H_V ≥ 1; 1: elastic.
+    compaction_resistance: Whether the base's slope along the ski counts as resistance.
+    shear_displacement: u_y > 0 (m).
+    hardness_growth, layer_depth, lower_hardness: γ' ≥ 0 (1/m); depth (m) at which a lower layer begins, and its H_V
+        (N/m³); None: one layer.
+    layers: Hardness of several layers over H_V instead.
+    damping, delayed_share, retardation_time: c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and
+        c₂/H₂ > 0 (s) of its delayed depth.
+    friction, friction_by_speed, friction_acts_on, friction_direction: μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); the load
+        that it multiplies, and the direction of the force.
+    friction_law, temperature, liquid_water: μ over speed and snow instead of μ_0 and μ_1, which are 0 then; temperature
+        of the snow's surface (°C), None: not known; liquid water (% of the volume), None: dry.
     """
 
     snow: Annotated[SnowProperties, Section("snow", otherwise=True)]

@@ -36,19 +36,12 @@ _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
 class ScenarioFile(ShownFields):
     """A scenario with the words that it was given in.
 
-    Attributes
-    ----------
-    title
-        The built-in name, or the file's path.
-    values
-        Every key of `SCENARIO_KEYS` with the value in force, in the unit that the key names; None if missing.
-        H_V and S_f are there also where a name gave them.
-    scenario
-        In SI.
-    files
-        Files that were read: the scenario's file, profile, results, ski.
-    warnings
-        In words.
+    title: The built-in name, or the file's path.
+    values: Every key of `SCENARIO_KEYS` with the value in force, in the unit that the key names; None if missing. H_V
+        and S_f are there also where a name gave them.
+    scenario: In SI.
+    files: Files that were read: the scenario's file, profile, results, ski.
+    warnings: In words.
     """
 
     title: str

@@ -193,18 +193,11 @@ class Scenario(Shown):
     def with_(self, **changes: Any) -> Scenario:
         """Copy of the scenario with other parts or values.
 
-        Parameters
-        ----------
-        **changes
-            Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio is used
-            if it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers by the keys of
-            a scenario file without their section, in the units in their names.
-
-        Raises
-        ------
-        ParameterError
-            A name is not a part and no key (the nearest is named), a value is outside its range, or parts do not go
-            together.
+        **changes: Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio
+            is used if it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers by the
+            keys of a scenario file without their section, in the units in their names.
+        Raises ParameterError: a name is not a part and no key (the nearest is named), a value is outside its range, or
+            parts do not go together.
 
         Examples
         --------

@@ -16,32 +16,25 @@ Steers: TypeAlias = Literal["turns", "gates", "side-slip", "wedge"]
 class Skier:
     """Steering, body and control of a balanced skier, SI and rad.
 
-    Attributes
-    ----------
-    steers, stops_after
-        By a plan of turns over time, through the gates of the scenario's course, or straight: a side-slip at
-        `brakes_to` that stops after `stops_after` (s), or a wedge to a stop.
-    first_turn, turn_time, turns, turn_angle, first_to_left
-        The plan: when the first half turn begins (s), how long a whole turn takes (s), how many there are, the first
-        one counted as a half, the course at the edge change (rad), and to which side the first one goes.
-    pole_clearance, line_rate
-        Through gates: distance at which the boots' middle passes the turning poles (m), and the rate (1/s) at which
-        carved turns return to the line.
-    brakes_to
-        Target speed of the braking in skidded turns (m/s); 0: turns are carved as far as the snow holds.
-    assumed_hardness, assumed_strength
-        H_V (N/m³) and S_f (N/m²) that the control assumes; 0: those of the scenario.
-    longest_leg, shortest_leg, leg_load, greatest_edge, greatest_hip, hip_torque, greatest_shift, greatest_shift_speed
-        Limits of the body: leg (m), load of both legs (body weights), edge angle, yaw of the body against the skis
-        (rad), torque of the hips (N m), shift of the centre of mass along the skis (m) and its rate (m/s).
-    greatest_lean, greatest_slip, least_slip, braking, outer_share, edge_rate, leg_gain, leg_yielding, edge_gain
-        Of the control: lean and slip that it plans (rad), deceleration over the speed that is too much (1/s), share of
-        the load on the outer ski, corner frequency of the edge angle (1/s), gain of legs and edges on the error of the
+    steers, stops_after: By a plan of turns over time, through the gates of the scenario's course, or straight: a
+        side-slip at `brakes_to` that stops after `stops_after` (s), or a wedge to a stop.
+    first_turn, turn_time, turns, turn_angle, first_to_left: The plan: when the first half turn begins (s), how long a
+        whole turn takes (s), how many there are, the first one counted as a half, the course at the edge change (rad),
+        and to which side the first one goes.
+    pole_clearance, line_rate: Through gates: distance at which the boots' middle passes the turning poles (m), and the
+        rate (1/s) at which carved turns return to the line.
+    brakes_to: Target speed of the braking in skidded turns (m/s); 0: turns are carved as far as the snow holds.
+    assumed_hardness, assumed_strength: H_V (N/m³) and S_f (N/m²) that the control assumes; 0: those of the scenario.
+    longest_leg, shortest_leg, leg_load, greatest_edge, greatest_hip, hip_torque: Limits of the body: leg (m), load of
+        both legs (body weights), edge angle, yaw of the body against the skis (rad), torque of the hips (N m).
+    greatest_shift, greatest_shift_speed: Limits of the shift of the centre of mass along the skis (m) and its rate
+        (m/s).
+    greatest_lean, greatest_slip, least_slip, braking, outer_share, edge_rate, leg_gain, leg_yielding, edge_gain: Of the
+        control: lean and slip that it plans (rad), deceleration over the speed that is too much (1/s), share of the
+        load on the outer ski, corner frequency of the edge angle (1/s), gain of legs and edges on the error of the
         capture point, and rate at which legs give way (1/s).
-    highest_flight
-        Height of the feet over the snow at which a flight ends the run (m).
-    control_period
-        Time between two decisions (s).
+    highest_flight: Height of the feet over the snow at which a flight ends the run (m).
+    control_period: Time between two decisions (s).
 
     References
     ----------

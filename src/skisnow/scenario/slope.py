@@ -206,20 +206,12 @@ _ACTION: Final = Message("Write horizontal distance and height in m, with a deci
 def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     """Read a profile.
 
-    Parameters
-    ----------
-    path
-        A CSV file with a first line ``x,y``: horizontal distance, rising, and height, both in m. Commas, semicolons or
-        tabs between cells; decimal points, or commas where cells are parted otherwise. Other columns are not read.
-    gap
-        Action if neighbouring points are more than 5 m apart: "error", or "interpolate".
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, a column is missing, a cell is not a finite number or an impossible one (the message
-        names file, row, column and value), or the points do not form a profile: too few, x that does not rise, a gap, a
-        cliff.
+    path: A CSV file with a first line ``x,y``: horizontal distance, rising, and height, both in m. Commas, semicolons
+        or tabs between cells; decimal points, or commas where cells are parted otherwise. Other columns are not read.
+    gap: Action if neighbouring points are more than 5 m apart: "error", or "interpolate".
+    Raises ParameterError: the file cannot be read, a column is missing, a cell is not a finite number or an impossible
+        one (the message names file, row, column and value), or the points do not form a profile: too few, x that does
+        not rise, a gap, a cliff.
     """
     limits = profile_limits(COLUMNS)
     rows = csv_rows(path, COLUMNS, action=_ACTION)

@@ -158,18 +158,11 @@ _ACTION: Final = Message(
 def read_snow_map(path: str | Path) -> SnowMap:
     """Read H_V, S_f and friction over the place.
 
-    Parameters
-    ----------
-    path
-        CSV with ``x_m``, one or more of ``H_V_N_per_mm3``, ``S_f_N_per_mm2`` and ``mu_share`` (μ over the scenario's),
-        and where the snow varies across the slope ``y_m``. With ``y_m`` places are those of an even grid, in any order;
-        without it x rises, evenly or not, and values between are those of monotone cubics (PCHIP).
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, a column is missing, a cell has no number above 0, or places do not form a grid; file,
-        row, column and value are named.
+    path: CSV with ``x_m``, one or more of ``H_V_N_per_mm3``, ``S_f_N_per_mm2`` and ``mu_share`` (μ over the
+        scenario's), and where the snow varies across the slope ``y_m``. With ``y_m`` places are those of an even grid,
+        in any order; without it x rises, evenly or not, and values between are those of monotone cubics (PCHIP).
+    Raises ParameterError: the file cannot be read, a column is missing, a cell has no number above 0, or places do not
+        form a grid; file, row, column and value are named.
     """
     rows = [_checked_row(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
     names = [name for name in SIZES if rows and name in rows[0].cells]

@@ -163,18 +163,11 @@ _ACTION: Final = Message(
 def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 0.0, origin_y: float = 0.0) -> Terrain:
     """Read measured terrain.
 
-    Parameters
-    ----------
-    path
-        ``.asc``, ``.agr``, or a file that begins with ``ncols``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF, with
-        the heights in the first band. Any other: CSV with the columns ``x_m``, ``y_m``, ``z_m``, rows in any order.
-    smoothing, origin_x, origin_y
-        As of `Terrain` (m).
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read or is not a grid; file, row, column and value are named.
+    path: ``.asc``, ``.agr``, or a file that begins with ``ncols``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF,
+        with the heights in the first band. Any other: CSV with the columns ``x_m``, ``y_m``, ``z_m``, rows in any
+        order.
+    smoothing, origin_x, origin_y: As of `Terrain` (m).
+    Raises ParameterError: the file cannot be read or is not a grid; file, row, column and value are named.
     """
     raster = _read_heights(Path(path))
     require_metres(path, raster, HEIGHT, steepest=math.tan(math.radians(STEEPEST_DEG)))

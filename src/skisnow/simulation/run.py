@@ -48,22 +48,15 @@ GIVEN: Final = ("boots", "push")
 class SkiHistory(Shown):
     """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the place along it or the coordinate.
 
-    Attributes
-    ----------
-    station
-        Places along the ski, tip to tail, positive before the boot (m), (m,).
-    track
-        (n, 2, 3) the loaded edge under the boot, nearer the middle of a flat ski, on the snow surface (m).
-    depth
-        (n, 2) of that edge below the undisturbed surface (m); negative: above it.
-    edge_depth
-        (n, 2, m) of the edge that is down, below the undisturbed surface (m); negative: above it.
-    force_per_length, shear_per_length
-        (n, 2, m) of the snow along its normal, and across the edge, positive left (N/m).
-    force
-        (n, 2, 3) total force of the snow on the ski in the slope's axes: normal force, shear and friction (N).
-    bending, twist
-        (n, 2, m) deflection of the base away from the snow (m), growth of the edge angle (rad), against the boot.
+    station: Places along the ski, tip to tail, positive before the boot (m), (m,).
+    track: (n, 2, 3) the loaded edge under the boot, nearer the middle of a flat ski, on the snow surface (m).
+    depth: (n, 2) of that edge below the undisturbed surface (m); negative: above it.
+    edge_depth: (n, 2, m) of the edge that is down, below the undisturbed surface (m); negative: above it.
+    force_per_length, shear_per_length: (n, 2, m) of the snow along its normal, and across the edge, positive left
+        (N/m).
+    force: (n, 2, 3) total force of the snow on the ski in the slope's axes: normal force, shear and friction (N).
+    bending, twist: (n, 2, m) deflection of the base away from the snow (m), growth of the edge angle (rad), against the
+        boot.
     """
 
     station: FloatArray
@@ -95,18 +88,11 @@ class SkiHistory(Shown):
 class Groove(Shown):
     """Grooves of the skis in the snow, one entry for each piece of a line across the path.
 
-    Attributes
-    ----------
-    middle
-        (k, 3) of the piece, on the undisturbed surface (m).
-    left
-        (k, 3) unit vector along it, to the left.
-    width
-        (k,) across (m).
-    depth
-        (k,) deepest that the snow was pushed (m).
-    residual_depth
-        (k,) of the groove that stays (m).
+    middle: (k, 3) of the piece, on the undisturbed surface (m).
+    left: (k, 3) unit vector along it, to the left.
+    width: (k,) across (m).
+    depth: (k,) deepest that the snow was pushed (m).
+    residual_depth: (k,) of the groove that stays (m).
     """
 
     middle: FloatArray
@@ -229,23 +215,12 @@ class Run(Shown):
     def plot(self, what: str = "track") -> Any:
         """A figure of the run.
 
-        Parameters
-        ----------
-        what
-            "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
-            normal force along both skis over time; "grip": grip utilisation of each ski; "energies";
-            "course": the line over the gates, with the edge angle as colour; "balance": lean, edge angle and forces;
-            "boots": edge angles of both boots, forces and edging moments of the skis on them.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A new figure; no window is opened.
-
-        Raises
-        ------
-        ParameterError
-            The figure does not exist, or the run ended before its first step.
+        what: "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
+            normal force along both skis over time; "grip": grip utilisation of each ski; "energies"; "course": the line
+            over the gates, with the edge angle as colour; "balance": lean, edge angle and forces; "boots": edge angles
+            of both boots, forces and edging moments of the skis on them.
+        Returns: A new figure; no window is opened.
+        Raises ParameterError: the figure does not exist, or the run ended before its first step.
         """
         from ..report.run.drawings import run_figure
 
@@ -254,15 +229,8 @@ class Run(Shown):
     def report(self, folder: str | Path) -> Path:
         """Write the files of ``skisnow simulate --out``: summary.json, track.csv, run.nc, figures/ and report.html.
 
-        Returns
-        -------
-        Path
-            Of report.html.
-
-        Raises
-        ------
-        OutputError
-            A file cannot be written.
+        Returns: Of report.html.
+        Raises OutputError: a file cannot be written.
         """
         from ..report.run.folder import write_run
 
@@ -271,14 +239,8 @@ class Run(Shown):
     def to_dataframe(self) -> Any:
         """The rows of track.csv with its columns, units in their names; needs pandas (``skisnow[pandas]``).
 
-        Returns
-        -------
-        pandas.DataFrame
-
-        Raises
-        ------
-        ParameterError
-            pandas is not installed.
+        Returns: pandas.DataFrame
+        Raises ParameterError: pandas is not installed.
         """
         from ..report.run.file import run_dataframe
 
@@ -287,14 +249,8 @@ class Run(Shown):
     def to_xarray(self) -> Any:
         """The content of run.nc, over time and along the skis, SI; needs xarray (``skisnow[xarray]``).
 
-        Returns
-        -------
-        xarray.Dataset
-
-        Raises
-        ------
-        ParameterError
-            xarray is not installed.
+        Returns: xarray.Dataset
+        Raises ParameterError: xarray is not installed.
         """
         from ..report.run.file import run_dataset
 

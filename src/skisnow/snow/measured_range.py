@@ -38,16 +38,10 @@ _ONE_AT_A_TIME: Final = threading.RLock()
 class MeasuredRange:
     """Measured range of one quantity, with its source.
 
-    Attributes
-    ----------
-    quantity
-        The quantity in words.
-    lowest, highest
-        Ends of the range, in SI.
-    unit, unit_factor
-        The unit that the warning prints, and its size in SI.
-    source
-        Who measured it.
+    quantity: The quantity in words.
+    lowest, highest: Ends of the range, in SI.
+    unit, unit_factor: The unit that the warning prints, and its size in SI.
+    source: Who measured it.
     """
 
     quantity: str
@@ -60,14 +54,9 @@ class MeasuredRange:
     def warn_outside(self, value: npt.ArrayLike, relation: str, *, stacklevel: int = 2) -> None:
         """Issue one `RangeWarning` if any of the values (SI) is outside; NaN does not count as outside.
 
-        Parameters
-        ----------
-        value
-            Input of the relation, scalar or array.
-        relation
-            The relation's name, for the message.
-        stacklevel
-            As for `warnings.warn`, counted from the caller of this method.
+        value: Input of the relation, scalar or array.
+        relation: The relation's name, for the message.
+        stacklevel: As for `warnings.warn`, counted from the caller of this method.
 
         Examples
         --------

@@ -160,17 +160,9 @@ def _solved_on(A: FloatArray, z: FloatArray, support: tuple[int, ...], n: int) -
 def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     """Minimise βᵀ G β - 2 mᵀ β over β ≥ 0 for a whole batch of normal equations.
 
-    Parameters
-    ----------
-    gram
-        G = AᵀA, shape (B, p, p), 1 ≤ p ≤ 6.
-    moment
-        m = Aᵀy, shape (B, p).
-
-    Returns
-    -------
-    array
-        β, shape (B, p); exactly 0.0 on the bound. NaN for a member that has a value that is not finite. Where G is
+    gram: G = AᵀA, shape (B, p, p), 1 ≤ p ≤ 6.
+    moment: m = Aᵀy, shape (B, p).
+    Returns: β, shape (B, p); exactly 0.0 on the bound. NaN for a member that has a value that is not finite. Where G is
         singular, a solution with the fewest coefficients above zero.
 
     Notes

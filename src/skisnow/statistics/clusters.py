@@ -32,14 +32,10 @@ _WHOLLY = 1e-9
 class ClusterIntervals:
     """Result of `cluster_intervals`; p coefficients, the intercept first.
 
-    Attributes
-    ----------
-    intervals, standard_errors, degrees_of_freedom
-        Shapes (p, 2), (p,), (p,). NaN for a coefficient that not at least two clusters determine.
-    n_clusters
-        Number of different clusters.
-    coefficients
-        Least-squares estimates, shape (p,).
+    intervals, standard_errors, degrees_of_freedom: Shapes (p, 2), (p,), (p,). NaN for a coefficient that not at least
+        two clusters determine.
+    n_clusters: Number of different clusters.
+    coefficients: Least-squares estimates, shape (p,).
     """
 
     intervals: FloatArray
@@ -61,22 +57,10 @@ def cluster_intervals(
 
     Errors may depend on each other in any way within a cluster; the clusters are independent.
 
-    Parameters
-    ----------
-    response, predictors, intercept, confidence
-        As in `linear_fit`.
-    clusters
-        Name or number of the cluster of each observation, shape (n,).
-
-    Raises
-    ------
-    ParameterError, FitError
-        As `linear_fit`.
-
-    Warns
-    -----
-    FitWarning
-        As `linear_fit`.
+    response, predictors, intercept, confidence: As in `linear_fit`.
+    clusters: Name or number of the cluster of each observation, shape (n,).
+    Raises ParameterError, FitError: as `linear_fit`.
+    Warns FitWarning: as `linear_fit`.
 
     Notes
     -----

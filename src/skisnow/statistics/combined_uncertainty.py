@@ -32,18 +32,11 @@ def welch_satterthwaite(variances: npt.ArrayLike, degrees_of_freedom: npt.ArrayL
 
     ν_eff = (Σ uᵢ²)² / Σ (uᵢ⁴/νᵢ)
 
-    Parameters
-    ----------
-    variances
-        Contributions uᵢ² ≥ 0 to the variance of the result, shape (..., k).
-    degrees_of_freedom
-        νᵢ of each contribution, shape (..., k) or broadcast to it; ``inf`` for a contribution that counts as known.
-
-    Returns
-    -------
-    array
-        ν_eff, shape (...). ``inf`` where no contribution above zero has finite νᵢ; 0 where one has νᵢ = 0; NaN where
-        an input is NaN or below zero.
+    variances: Contributions uᵢ² ≥ 0 to the variance of the result, shape (..., k).
+    degrees_of_freedom: νᵢ of each contribution, shape (..., k) or broadcast to it; ``inf`` for a contribution that
+        counts as known.
+    Returns: ν_eff, shape (...). ``inf`` where no contribution above zero has finite νᵢ; 0 where one has νᵢ = 0; NaN
+        where an input is NaN or below zero.
 
     Examples
     --------
@@ -71,17 +64,9 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
 
     Student's t quantile at (1 + confidence)/2; the normal quantile where the degrees of freedom are infinite.
 
-    Parameters
-    ----------
-    degrees_of_freedom
-        ν, any shape; need not be whole numbers.
-    confidence
-        Between 0 and 1, exclusive.
-
-    Returns
-    -------
-    array
-        k, of the shape of ν; NaN where ν is NaN or not above zero: nothing is known of the scatter there.
+    degrees_of_freedom: ν, any shape; need not be whole numbers.
+    confidence: Between 0 and 1, exclusive.
+    Returns: k, of the shape of ν; NaN where ν is NaN or not above zero: nothing is known of the scatter there.
 
     Examples
     --------
@@ -159,22 +144,12 @@ def resampling_counts(
 ) -> Iterator[FloatArray]:
     """Draw bootstrap resamples: n units from n units with replacement, as counts.
 
-    Parameters
-    ----------
-    n_units
-        Units, and draws in each resample, ≥ 1.
-    n_resamples
-        Resamples in all, ≥ 0.
-    rng
-        Source of random numbers; the counts depend only on its state, not on ``chunk``.
-    chunk
-        Resamples in each array (default: some MB).
-
-    Yields
-    ------
-    array
-        Shape (b, n_units), b ≤ chunk: number of draws of each unit; every row sums to n_units. Floats, for the product
-        with the units' contributions: ``counts @ contributions``.
+    n_units: Units, and draws in each resample, ≥ 1.
+    n_resamples: Resamples in all, ≥ 0.
+    rng: Source of random numbers; the counts depend only on its state, not on ``chunk``.
+    chunk: Resamples in each array (default: some MB).
+    Returns: Shape (b, n_units), b ≤ chunk: number of draws of each unit; every row sums to n_units. Floats, for the
+        product with the units' contributions: ``counts @ contributions``.
 
     Examples
     --------
@@ -204,19 +179,11 @@ def _drawn(n_units: int, n_resamples: int, rng: np.random.Generator, chunk: int)
 def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> FloatArray:
     """Percentile interval of resampled results: the quantiles (1 ± confidence)/2 over the first axis.
 
-    Parameters
-    ----------
-    samples
-        Shape (B, ...), one entry for each resample.
-    confidence
-        Between 0 and 1.
-
-    Returns
-    -------
-    array
-        Low and high, shape (..., 2). A NaN is a resample without a result. Its value is unknown, so it counts as below
-        everything for the low end and above everything for the high end. If an end would be such a sample, both ends
-        are NaN. NaN for B = 0.
+    samples: Shape (B, ...), one entry for each resample.
+    confidence: Between 0 and 1.
+    Returns: Low and high, shape (..., 2). A NaN is a resample without a result. Its value is unknown, so it counts as
+        below everything for the low end and above everything for the high end. If an end would be such a sample, both
+        ends are NaN. NaN for B = 0.
 
     Notes
     -----

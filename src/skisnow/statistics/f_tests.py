@@ -29,25 +29,13 @@ def nested_f_test(
 
     F = ((SSE_reduced - SSE_full)/df1) / (SSE_full/df2), df1 = p_full - p_reduced, df2 = n - p_full.
 
-    Parameters
-    ----------
-    sse_full, sse_reduced
-        Sums of squared residuals, in one and the same unit.
-    n
-        Number of observations.
-    n_parameters_full, n_parameters_reduced
-        Numbers of fitted coefficients, an intercept counted; the reduced model has not more than the full one.
-
-    Returns
-    -------
-    NestedTest
-        F and p are NaN where df1 = 0 (one and the same model), where df2 ≤ 0 (nothing left to judge by), where an SSE
-        is NaN, and where both models fit exactly. If only the full one fits exactly, F is infinite and p = 0.
-
-    Raises
-    ------
-    ParameterError
-        If the reduced model has more parameters than the full one, or an SSE is below zero.
+    sse_full, sse_reduced: Sums of squared residuals, in one and the same unit.
+    n: Number of observations.
+    n_parameters_full, n_parameters_reduced: Numbers of fitted coefficients, an intercept counted; the reduced model has
+        not more than the full one.
+    Returns: F and p are NaN where df1 = 0 (one and the same model), where df2 ≤ 0 (nothing left to judge by), where an
+        SSE is NaN, and where both models fit exactly. If only the full one fits exactly, F is infinite and p = 0.
+    Raises ParameterError: if the reduced model has more parameters than the full one, or an SSE is below zero.
 
     Notes
     -----
@@ -143,29 +131,14 @@ def _letter(index: int) -> str:
 def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, alpha: float = 0.05) -> int:
     """Smallest number of tests per group that detects a ratio of their means, by the two-sided t test on logarithms.
 
-    Parameters
-    ----------
-    sd_log
-        Standard deviation of the natural logarithms within a group, > 0.
-    ratio
-        Ratio of the geometric means that is to differ from 1, > 0, not 1.
-    power
-        Chance that the test finds it, between alpha and 1.
-    alpha
-        Level of the test.
-
-    Returns
-    -------
-    int
-        n ≥ 2 per group: the smallest with P(|t| > t_crit) ≥ power, t noncentral with 2 n - 2 degrees of freedom and
-        noncentrality |ln ratio| √(n/2)/sd_log.
-
-    Raises
-    ------
-    ParameterError
-        If an argument is outside the range above.
-    FitError
-        If more than 10⁹ tests would be needed.
+    sd_log: Standard deviation of the natural logarithms within a group, > 0.
+    ratio: Ratio of the geometric means that is to differ from 1, > 0, not 1.
+    power: Chance that the test finds it, between alpha and 1.
+    alpha: Level of the test.
+    Returns: n ≥ 2 per group: the smallest with P(|t| > t_crit) ≥ power, t noncentral with 2 n - 2 degrees of freedom
+        and noncentrality |ln ratio| √(n/2)/sd_log.
+    Raises ParameterError: if an argument is outside the range above.
+    Raises FitError: if more than 10⁹ tests would be needed.
 
     Examples
     --------

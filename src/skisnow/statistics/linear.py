@@ -73,28 +73,14 @@ def linear_fit(
 ) -> LinearFit:
     """Fit response = b0 + b1 x1 + … + bk xk + error by least squares.
 
-    Parameters
-    ----------
-    response
-        Shape (n,).
-    predictors
-        x, shape (n, k) or (n,), without a column of ones; (n, 0) fits the mean.
-    intercept
-        Whether b0 is fitted; it is then the first coefficient.
-    confidence
-        Confidence of the intervals.
-
-    Raises
-    ------
-    ParameterError
-        If shapes do not fit or a value is not finite.
-    FitError
-        If n < p, or a predictor does not vary or follows from the others.
-
-    Warns
-    -----
-    FitWarning
-        If the condition number of the centred and scaled predictors is above 1,000: the coefficients lose digits.
+    response: Shape (n,).
+    predictors: x, shape (n, k) or (n,), without a column of ones; (n, 0) fits the mean.
+    intercept: Whether b0 is fitted; it is then the first coefficient.
+    confidence: Confidence of the intervals.
+    Raises ParameterError: if shapes do not fit or a value is not finite.
+    Raises FitError: if n < p, or a predictor does not vary or follows from the others.
+    Warns FitWarning: if the condition number of the centred and scaled predictors is above 1,000: the coefficients lose
+        digits.
 
     Notes
     -----
@@ -144,14 +130,9 @@ def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[floa
 class VarianceShares(ShownFields):
     """Shares of an output's variance.
 
-    Attributes
-    ----------
-    share
-        Shape (k,), 0 to 1: share of an input, as its linear effect.
-    interval
-        Shape (k, 2).
-    left
-        Share of no single input: curvature and interaction of inputs.
+    share: Shape (k,), 0 to 1: share of an input, as its linear effect.
+    interval: Shape (k, 2).
+    left: Share of no single input: curvature and interaction of inputs.
     """
 
     share: FloatArray
@@ -162,26 +143,13 @@ class VarianceShares(ShownFields):
 def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike, *, confidence: float = 0.95) -> VarianceShares:
     """First-order Sobol shares of independent inputs, as far as the output follows them in proportion.
 
-    Parameters
-    ----------
-    output
-        Shape (n,).
-    inputs
-        Drawn independently of each other, shape (n, k), n ≥ k + 2; each varies.
-    confidence
-        Confidence of the intervals.
-
-    Returns
-    -------
-    VarianceShares
-        b² Var(x)/Var(y) of the linear regression, minus the value that noise alone would give (the squared standard
-        error instead of 0), and not below 0; intervals from those of b by Student's t. All 0 if the output does not
-        vary.
-
-    Raises
-    ------
-    ParameterError, FitError
-        As of `linear_fit`.
+    output: Shape (n,).
+    inputs: Drawn independently of each other, shape (n, k), n ≥ k + 2; each varies.
+    confidence: Confidence of the intervals.
+    Returns: b² Var(x)/Var(y) of the linear regression, minus the value that noise alone would give (the squared
+        standard error instead of 0), and not below 0; intervals from those of b by Student's t. All 0 if the output
+        does not vary.
+    Raises ParameterError, FitError: as of `linear_fit`.
 
     References
     ----------

@@ -31,12 +31,8 @@ _SHARD: Final = re.compile(r"(\d{1,9})/(\d{1,9})")
 class Shard:
     """One of several parts of a study: every n-th point.
 
-    Attributes
-    ----------
-    number
-        From 1 to `count`.
-    count
-        How many parts there are.
+    number: From 1 to `count`.
+    count: How many parts there are.
     """
 
     number: int
@@ -76,26 +72,12 @@ def run_shard(
 ) -> Path:
     """Compute the points of one part of a study that are missing; several parts may be computed at once.
 
-    Parameters
-    ----------
-    study
-        The study, or the path of its STUDY.toml.
-    shard
-        The part, such as "2/8".
-    workers, executor, progress
-        As of `skisnow.study`.
-
-    Returns
-    -------
-    Path
-        The file of the part, which `merge_shards` takes; it is continued when the part is started again.
-
-    Raises
-    ------
-    ParameterError
-        The file is of another study, or the shard is not valid.
-    OutputError
-        The file cannot be written, or another run is writing it.
+    study: The study, or the path of its STUDY.toml.
+    shard: The part, such as "2/8".
+    workers, executor, progress: As of `skisnow.study`.
+    Returns: The file of the part, which `merge_shards` takes; it is continued when the part is started again.
+    Raises ParameterError: the file is of another study, or the shard is not valid.
+    Raises OutputError: the file cannot be written, or another run is writing it.
 
     References
     ----------
@@ -121,24 +103,12 @@ def run_shard(
 def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
     """Put the parts of a study together: the same table as without parts. The parts stay.
 
-    Parameters
-    ----------
-    out
-        The table; ends in .csv, .sqlite or .parquet. A table of another study in its place is moved aside.
-    parts
-        The files of `run_shard`, in any order.
-
-    Returns
-    -------
-    StudyTable
-        A row for each point; not written if no point could be computed.
-
-    Raises
-    ------
-    ParameterError
-        The parts are of different studies or were computed by different cores, or points are missing.
-    OutputError
-        A part is still being computed, or the place cannot be written.
+    out: The table; ends in .csv, .sqlite or .parquet. A table of another study in its place is moved aside.
+    parts: The files of `run_shard`, in any order.
+    Returns: A row for each point; not written if no point could be computed.
+    Raises ParameterError: the parts are of different studies or were computed by different cores, or points are
+        missing.
+    Raises OutputError: a part is still being computed, or the place cannot be written.
 
     References
     ----------

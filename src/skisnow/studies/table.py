@@ -91,19 +91,10 @@ class StudyTable(Shown):
 def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequence[str] = ()) -> StudyTable:
     """Read a study's table back.
 
-    Parameters
-    ----------
-    path
-        The file: CSV, or by the ending of its name SQLite or Parquet.
-    keys
-        The study's inputs: the texts among them stay texts.
-    varied
-        The inputs that vary.
-
-    Raises
-    ------
-    ParameterError
-        It cannot be read, or is not a study's table.
+    path: The file: CSV, or by the ending of its name SQLite or Parquet.
+    keys: The study's inputs: the texts among them stay texts.
+    varied: The inputs that vary.
+    Raises ParameterError: it cannot be read, or is not a study's table.
     """
     path = Path(path)
     stored = stored_rows(path, keys)

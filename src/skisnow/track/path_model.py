@@ -113,13 +113,9 @@ class _Residuals(NamedTuple):
 class Chain:
     """A linear chain of states that a white noise drives, over steps of any length.
 
-    Parameters
-    ----------
-    dynamics : (k, k)
-        Of ẋ = dynamics x + (0, …, 0, 1) noise.
-    density
-        Spectral density of the noise.
-    step : (n,) s
+    dynamics: (k, k), of ẋ = dynamics x + (0, …, 0, 1) noise.
+    density: Spectral density of the noise.
+    step: (n,) s,
     """
 
     def __init__(self, dynamics: FloatArray, density: float, step: FloatArray) -> None:
@@ -156,14 +152,9 @@ def speed_chain(correlation_time: float, step: FloatArray) -> Chain:
 class PathModel:
     """Model of the path through the points of one stretch without a gap; its nodes are at and between the points.
 
-    Parameters
-    ----------
-    time
-        Rising times of the points (s), (m,).
-    place
-        Measured x and y of the points (m), (m, 2).
-    scales
-        Times that depend on the interval between points.
+    time: Rising times of the points (s), (m,).
+    place: Measured x and y of the points (m), (m, 2).
+    scales: Times that depend on the interval between points.
     """
 
     def __init__(self, time: FloatArray, place: FloatArray, scales: TimeScales) -> None:

@@ -205,14 +205,10 @@ def climb_samples(
 ) -> FloatSamples | None:
     """Samples (count, m) of the vertical speed (m/s) at nodes; None if fewer than 10 % of the points have a height.
 
-    Parameters
-    ----------
-    time : (n,) s
-    height : (n,) m
-        NaN if unknown.
-    part : (n,)
-        Number of the part without a gap of each point.
-    nodes : (m,) s
+    time: (n,) s,
+    height: (n,) m, naN if unknown.
+    part: (n,), number of the part without a gap of each point.
+    nodes: (m,) s,
     """
     has_height = np.isfinite(height)
     if np.count_nonzero(has_height) < max(2.0, LEAST_SHARE * len(time)):

@@ -62,17 +62,9 @@ class FrictionLaw(abc.ABC):
     def friction_force(self, normal_force: npt.ArrayLike, sliding_velocity: npt.ArrayLike) -> FloatArray:
         """Force (N) of the snow on the ski, -μ(v) F_n v/v, against the sliding velocity.
 
-        Parameters
-        ----------
-        normal_force
-            F_n (N), shape (...). Below 0 the ski is off the snow and the friction is 0.
-        sliding_velocity
-            Velocity (m/s) of the ski over the snow, shape (..., d) with d components.
-
-        Returns
-        -------
-        array
-            Shape (..., d).
+        normal_force: F_n (N), shape (...). Below 0 the ski is off the snow and the friction is 0.
+        sliding_velocity: Velocity (m/s) of the ski over the snow, shape (..., d) with d components.
+        Returns: Shape (..., d).
 
         Notes
         -----

@@ -20,14 +20,9 @@ from .speed_laws import WaterFilmFriction
 class SnowState:
     """Friction on snow of one temperature and wetness.
 
-    Attributes
-    ----------
-    lubricated_friction, dry_friction, viscous_slope
-        μ_∞, a and c (s/m) of `WaterFilmFriction`.
-    temperature
-        Temperature of the snow's surface (°C), at most 0; None if unknown.
-    liquid_water
-        Share of liquid water in the volume (%); above 0 at 0 °C only.
+    lubricated_friction, dry_friction, viscous_slope: μ_∞, a and c (s/m) of `WaterFilmFriction`.
+    temperature: Temperature of the snow's surface (°C), at most 0; None if unknown.
+    liquid_water: Share of liquid water in the volume (%); above 0 at 0 °C only.
     """
 
     lubricated_friction: Annotated[float, Quantity("mu", "μ_∞, friction at high speed"), Allowed(0.0, 1.0)]
@@ -59,18 +54,11 @@ class SnowState:
 class FrictionFile:
     """Friction over temperature, liquid water and speed, between states on a straight line.
 
-    Attributes
-    ----------
-    source
-        Who measured it.
-    speeds
-        Measured speeds (m/s).
-    film_speed
-        v_0 (m/s) of `WaterFilmFriction`, of all states.
-    states
-        From cold to wet; a single one may have no temperature and then holds for any snow.
-    path
-        The file, for messages.
+    source: Who measured it.
+    speeds: Measured speeds (m/s).
+    film_speed: v_0 (m/s) of `WaterFilmFriction`, of all states.
+    states: From cold to wet; a single one may have no temperature and then holds for any snow.
+    path: The file, for messages.
     """
 
     source: Annotated[str, Quantity("source", "who measured it")]
@@ -95,17 +83,10 @@ class FrictionFile:
     def at(self, temperature: float | None, liquid_water: float = 0.0) -> WaterFilmFriction:
         """Law on a snow; beyond the states that of the nearest one.
 
-        Parameters
-        ----------
-        temperature
-            Temperature of the snow's surface (°C); None: not known, which only a law without temperature accepts.
-        liquid_water
-            In the volume (%).
-
-        Raises
-        ------
-        ParameterError
-            The law has temperatures and none is given, or wet snow is not at 0 °C.
+        temperature: Temperature of the snow's surface (°C); None: not known, which only a law without temperature
+            accepts.
+        liquid_water: In the volume (%).
+        Raises ParameterError: the law has temperatures and none is given, or wet snow is not at 0 °C.
         """
         first = self.states[0]
         if first.temperature is None:
@@ -139,17 +120,11 @@ class FrictionFile:
 def read_friction_file(path: str | Path) -> FrictionFile:
     """Read friction over temperature, liquid water and speed.
 
-    Parameters
-    ----------
-    path
-        TOML with ``source``, ``speed_m_per_s = [slowest, fastest]``, ``film_speed_m_per_s``, and a table ``[[state]]``
-        for each state of the snow: ``mu``, ``dry_mu``, ``viscous_s_per_m``, ``temperature_C``,
+    path: TOML with ``source``, ``speed_m_per_s = [slowest, fastest]``, ``film_speed_m_per_s``, and a table
+        ``[[state]]`` for each state of the snow: ``mu``, ``dry_mu``, ``viscous_s_per_m``, ``temperature_C``,
         ``liquid_water_percent``.
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, or a key is unknown, missing or out of range; file, state, key and value are named.
+    Raises ParameterError: the file cannot be read, or a key is unknown, missing or out of range; file, state, key and
+        value are named.
     """
     values = read_toml(path)
     tables = values.get("state", [])

@@ -44,29 +44,12 @@ class PenetrationLaw(abc.ABC):
     def reaction_force(self, tool: Tool, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Component F_n (N) of the snow's force along the snow normal, ≥ 0.
 
-        Parameters
-        ----------
-        tool
-            The body pressed in; it gives area and volume.
-        penetration_depth
-            e (m), any shape; below 0 the tool is above the snow and feels nothing.
-        edge_angle
-            ϑ (rad), 0 ≤ ϑ ≤ π/2, any shape that broadcasts with the depth.
-
-        Returns
-        -------
-        array
-            Force in the common shape of depth and angle.
-
-        Raises
-        ------
-        ParameterError
-            An edge angle is outside 0 to π/2.
-
-        Warns
-        -----
-        RangeWarning
-            An edge angle is outside the law's measured range.
+        tool: The body pressed in; it gives area and volume.
+        penetration_depth: e (m), any shape; below 0 the tool is above the snow and feels nothing.
+        edge_angle: ϑ (rad), 0 ≤ ϑ ≤ π/2, any shape that broadcasts with the depth.
+        Returns: Force in the common shape of depth and angle.
+        Raises ParameterError: an edge angle is outside 0 to π/2.
+        Warns RangeWarning: an edge angle is outside the law's measured range.
         """
         angle = edge_angles(edge_angle)
         if self.edge_angle_range is not None:

@@ -35,22 +35,10 @@ class ShearLaw(abc.ABC):
     def failure_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Tangential force per length and depth of the edge, F_t/(L e) (N/m²).
 
-        Parameters
-        ----------
-        edge_depth
-            e (m), any shape; below 0 the edge is above the snow.
-        edge_angle
-            ϑ (rad), 0 ≤ ϑ ≤ π/2, any shape that broadcasts with the depth.
-
-        Raises
-        ------
-        ParameterError
-            An edge angle is outside 0 to π/2.
-
-        Warns
-        -----
-        RangeWarning
-            A depth or an edge angle is outside the law's measured range.
+        edge_depth: e (m), any shape; below 0 the edge is above the snow.
+        edge_angle: ϑ (rad), 0 ≤ ϑ ≤ π/2, any shape that broadcasts with the depth.
+        Raises ParameterError: an edge angle is outside 0 to π/2.
+        Warns RangeWarning: a depth or an edge angle is outside the law's measured range.
         """
         return self._checked_stress(edge_depth, edge_angle)
 

@@ -174,17 +174,9 @@ def _bends(place: FloatArray) -> list[Side | None]:
 def on_slope(course: Course, *, slope_angle: float | None) -> Course:
     """Convert a course to a scenario's x and y.
 
-    Parameters
-    ----------
-    course
-        A course in metres stays; one in east and north is rotated by its `fall_line_azimuth_deg`.
-    slope_angle
-        Inclination of a plane slope (rad), whose x goes down the incline; None: x is horizontal.
-
-    Raises
-    ------
-    ParameterError
-        The course is in degrees, and the direction of x is unknown.
+    course: A course in metres stays; one in east and north is rotated by its `fall_line_azimuth_deg`.
+    slope_angle: Inclination of a plane slope (rad), whose x goes down the incline; None: x is horizontal.
+    Raises ParameterError: the course is in degrees, and the direction of x is unknown.
     """
     if course.axes == "metres":
         return course
@@ -289,12 +281,8 @@ RULES: Final[dict[Discipline, Rules | None]] = {
 def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, ...]:
     """Sentences on departures of a course from the rules of its discipline, which are allowed for training.
 
-    Parameters
-    ----------
-    course
-        Course with its discipline.
-    drop
-        Difference in height from the first gate to the last (m); None if unknown.
+    course: Course with its discipline.
+    drop: Difference in height from the first gate to the last (m); None if unknown.
 
     Notes
     -----

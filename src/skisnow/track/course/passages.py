@@ -35,23 +35,14 @@ BEYOND: Final = template("Gate {gate} was missed: {distance:.2f} m beyond its ou
 class Passage(ShownFields):
     """Outcome of one gate.
 
-    Attributes
-    ----------
-    gate
-        The gate.
-    outcome
-        "passed": feet and ski tips crossed the gate's line between the poles; "straddled": with a pole between them;
-        "missed": outside the poles; "backwards": against the course only; "not_reached".
-    words
-        The outcome as a sentence.
-    time
-        Time (s), on the track's clock, at which the middle crossed the line; None if it did not.
-    speed
-        Horizontal speed (m/s) at that time.
-    clearance
-        Smallest distance (m) of a foot or tip from a pole on the line; below 0 outside of the gate.
-    doubt
-        Uncertainty (s) of the time due to the unknown path between points.
+    gate: The gate.
+    outcome: "passed": feet and ski tips crossed the gate's line between the poles; "straddled": with a pole between
+        them; "missed": outside the poles; "backwards": against the course only; "not_reached".
+    words: The outcome as a sentence.
+    time: Time (s), on the track's clock, at which the middle crossed the line; None if it did not.
+    speed: Horizontal speed (m/s) at that time.
+    clearance: Smallest distance (m) of a foot or tip from a pole on the line; below 0 outside of the gate.
+    doubt: Uncertainty (s) of the time due to the unknown path between points.
     """
 
     gate: Gate
@@ -118,14 +109,9 @@ class CourseResult(Shown):
 def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoint]) -> CourseResult:
     """Determine the outcome of each gate.
 
-    Parameters
-    ----------
-    course
-        Course in the coordinates of the points.
-    middle
-        Point whose crossing is the time at a gate.
-    parts
-        Points that must cross the line between the poles, by name: both feet and both ski tips (FIS ICR 661.4.1).
+    course: Course in the coordinates of the points.
+    middle: Point whose crossing is the time at a gate.
+    parts: Points that must cross the line between the poles, by name: both feet and both ski tips (FIS ICR 661.4.1).
         Empty: only the middle must cross it.
 
     Notes
@@ -217,14 +203,9 @@ class Crossing:
 class MovingPoint:
     """A point that moves in a plane: places at times, interpolated by cubics with its velocities.
 
-    Parameters
-    ----------
-    time
-        (n,), rising (s), n ≥ 2.
-    place
-        (n, 2) (m).
-    velocity
-        (n, 2) (m/s) (default: differences of second order, exact for a constant acceleration).
+    time: (n,), rising (s), n ≥ 2.
+    place: (n, 2) (m).
+    velocity: (n, 2) (m/s) (default: differences of second order, exact for a constant acceleration).
     """
 
     def __init__(self, time: FloatArray, place: FloatArray, velocity: FloatArray | None = None) -> None:
