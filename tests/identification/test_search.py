@@ -234,7 +234,7 @@ def test_bounds_that_exclude_the_start_are_rejected() -> None:
         ({"mu_0": {"lower": 0.3, "upper": 0.2}}, "below upper"),
         ({"mu_0": {"upper": True}}, "upper is True"),
         ({"mu_0": 0.3}, "must be a table"),
-        ({"muu_0": {"upper": 0.3}}, "friction.mu_0"),
+        ({"muu_0": {"upper": 0.3}}, r"mean mu_0\?"),
         ({"S_f": {"lower": -1.0}}, "allowed is above 0"),
     ],
 )

@@ -17,7 +17,7 @@ from typing import Final
 
 from .errors import ParameterError
 from .messages import Message
-from .user_files import plain_text
+from .user_files import plain_bytes
 
 SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 _FORMS: Final = {
@@ -247,21 +247,29 @@ def csv_rows(
 ) -> Iterator[CsvRow]:
     """The rows of a table that are not blank, one after the other: a wrong row is rejected before the next is read.
 
-    path: UTF-8 text with a first line of the names of the columns; comma, semicolon or tab, and with the last two a
-        decimal point or comma.
+    path: UTF-8, UTF-16 or Windows-1252 with a first line of the names of the columns, below ``sep=;`` if there is one;
+        comma, semicolon or tab, and with the last two a decimal point or comma.
     columns, further: columns that must be there, and those that may be, in any case of letters; others are not read.
     action: action that errors recommend.
     """
     path = Path(path)
-    text = plain_text(path, most_bytes=MOST_CSV_BYTES)
-    separator = most_frequent_separator(text[:_HEAD])
+    try:
+        text = decoded(plain_bytes(path, most_bytes=MOST_CSV_BYTES)).text.replace("\r\n", "\n").replace("\r", "\n")
+    except NoTextError as error:
+        raise ParameterError("{path} is not {encoding} text ({place}). Save it as UTF-8.").tag(
+            "not_text", path=path, encoding=error.encoding, place=error.place
+        ) from error
+    named = named_separator(text[:_HEAD])
+    separator = named or most_frequent_separator(text[:_HEAD])
     lines: Iterator[list[str]] = csv.reader(io.StringIO(text), delimiter=separator)
+    if named:
+        next(lines)
     mark = "."
     try:
         if separator != ",":
             every = list(lines)
             mark, lines = decimal_mark([chain.from_iterable(every[1:])], separator=separator), iter(every)
-        yield from _parse_rows(path, lines, columns, further, action, mark)
+        yield from _parse_rows(path, lines, columns, further, action, mark, 2 if named else 1)
     except csv.Error as error:
         raise ParameterError("{path} is not CSV text ({error}). {action}").tag(
             "not_csv", path=path, error=error, action=action
@@ -269,21 +277,27 @@ def csv_rows(
 
 
 def _parse_rows(
-    path: Path, lines: Iterator[list[str]], columns: Sequence[str], further: Sequence[str], action: Message, mark: str
+    path: Path,
+    lines: Iterator[list[str]],
+    columns: Sequence[str],
+    further: Sequence[str],
+    action: Message,
+    mark: str,
+    first: int,
 ) -> Iterator[CsvRow]:
     head = column_names(next(lines, []), (*columns, *further))
     missing = [name for name in columns if name not in head]
     if missing:
-        raise ParameterError("{path}, row 1: column {column} is missing among {columns}. {action}").tag(
-            "missing_column", path=path, column=missing[0], columns=head, action=action
+        raise ParameterError("{path}, row {row}: column {column} is missing among {columns}. {action}").tag(
+            "missing_column", path=path, row=first, column=missing[0], columns=head, action=action
         )
     twice = [name for name in (*columns, *further) if head.count(name) > 1]
     if twice:
-        raise ParameterError("{path}, row 1: the column {column} is there twice. Keep one of them.").tag(
-            "repeated_column", path=path, column=twice[0]
+        raise ParameterError("{path}, row {row}: the column {column} is there twice. Keep one of them.").tag(
+            "repeated_column", path=path, row=first, column=twice[0]
         )
     places = {name: head.index(name) for name in (*columns, *further) if name in head}
-    for row, cells in enumerate(lines, start=2):
+    for row, cells in enumerate(lines, start=first + 1):
         if any(cell.strip() for cell in cells[len(head) :]):
             raise ParameterError(
                 "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps because of "

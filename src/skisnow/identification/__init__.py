@@ -8,14 +8,6 @@ from .parameter import Parameter
 from .result import Identification, Identified, identification_dict
 
 __all__ = [
-    "Identification",
-    "Identified",
-    "MeasuredGrooves",
-    "Parameter",
-    "PhotoCellRun",
-    "PhotoCells",
-    "identification_dict",
-    "identify",
-    "read_measured_grooves",
-    "read_photo_cells",
-]
+    "Identification", "Identified", "MeasuredGrooves", "Parameter", "PhotoCellRun", "PhotoCells", "identification_dict",
+    "identify", "read_measured_grooves", "read_photo_cells",
+]  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import json
 import math
@@ -31,12 +32,13 @@ from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
 from .data_tables import (
     CELL_COLUMNS,
+    CELL_SPREAD,
     GROOVE_COLUMNS,
+    SPREADS,
     MeasuredGrooves,
     PhotoCells,
-    parse_grooves,
-    parse_photo_cells,
-    read_table,
+    read_measured_grooves,
+    read_photo_cells,
 )
 from .problem import START
 from .track_positions import TrackPoints, first_motion, require_near, track_points
@@ -60,17 +62,30 @@ def read_data(path: str | Path) -> Data:
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
-            return parse_photo_cells(read_table(path))
+            _reject_misspelt(path, head, (*CELL_COLUMNS, CELL_SPREAD))
+            return read_photo_cells(path)
         if head & set(GROOVE_COLUMNS) and not _is_track(head):
             if of_campaign := sorted(head & _OF_CAMPAIGN):
                 raise ParameterError(
                     "{path} has a column {column}: it is a table of a campaign, no measured grooves. Give its folder "
                     "to `skisnow analyse`, and results.json as snow.results"
                 ).tag("table_of_campaign", path=path, column=of_campaign[0])
-            return parse_grooves(read_table(path))
+            _reject_misspelt(path, head, (*GROOVE_COLUMNS, *SPREADS))
+            return read_measured_grooves(path)
     from ..track.read import read_track
 
     return read_track(path)
+
+
+def _reject_misspelt(path: Path, head: set[str], columns: tuple[str, ...]) -> None:
+    """Reject a column whose name is similar to that of a missing one: it would not be read."""
+    absent = [name for name in columns if name not in head]
+    for name in sorted(head.difference(columns)):
+        if similar := difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75):
+            raise ParameterError(
+                "{path}: unknown column {column}. Did you mean {similar}? Rename it, or give it a different name if it "
+                "is not to be read"
+            ).tag("misspelled_column", path=path, column=name, similar=similar[0])
 
 
 def _is_track(head: set[str]) -> bool:

@@ -129,6 +129,8 @@ def identify(
     scenario_input = (scenario if isinstance(scenario, ScenarioInput) else load_input(scenario)).changed(changes)
     scenario_file = build_input(scenario_input)
     tables = given_parameters(scenario_input.identify)
+    if clock_is_free is None:
+        clock_is_free = scenario_input.identify.get("clock", "start") == "free"
     keys = _named_keys(free, tables)
     measurements = collect_data(
         scenario_input, scenario_file, [data] if isinstance(data, Data | str | Path) else data, keys
@@ -143,9 +145,7 @@ def identify(
     rows = KeptRows.opened(checkpoint, identity) if checkpoint else KeptRows()
     counted = _ProgressCounter(progress or (lambda *_: None))
     with Simulations(simulate, rows, workers, counted, executor) as simulations:
-        observations = _make_observations(
-            scenario_file, measurements, simulations, clock_is_free=_is_clock_free(scenario_input, clock_is_free)
-        )
+        observations = _make_observations(scenario_file, measurements, simulations, clock_is_free=clock_is_free)
         _require_used(keys, observations)
         request = SearchRequest(
             title=scenario_input.title,
@@ -207,10 +207,6 @@ def _make_observations(
         require_groove_stays(scenario)
         observationss.append(GrooveResiduals(groove, scenario))
     return tuple(observationss)
-
-
-def _is_clock_free(scenario_input: ScenarioInput, chosen: bool | None) -> bool:
-    return scenario_input.identify.get("clock", "start") == "free" if chosen is None else chosen
 
 
 _KINDS: Final[dict[Kind, Message]] = {

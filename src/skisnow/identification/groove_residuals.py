@@ -142,7 +142,8 @@ class GrooveResiduals:
         """Side force (N) that both skis together need from the snow on that radius."""
         of = {**self.scenario.values, **values}
         side = math.copysign(1.0, float(of["sledge.edge_angle_deg"]))
-        pull = _downhill_pull(self.scenario, of) * math.sin(float(of["start.heading_deg"]) * DEGREE) * side
+        pull = float(of["slope.gravity_m_per_s2"]) * math.sin(_inclination(self.scenario, of))
+        pull = pull * math.sin(float(of["start.heading_deg"]) * DEGREE) * side
         return _total_mass(self.scenario, of) * (float(of["start.speed_m_per_s"]) ** 2 / turn_radius + pull)
 
     def required_strength(self, values: Values, turn_radius: float) -> float | None:
@@ -216,11 +217,6 @@ def _inclination(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
     start = scenario.scenario.start
     normal = normals_of(slope, start.x, start.y)
     return math.atan2(float(normal[0]), float(normal[2]))
-
-
-def _downhill_pull(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
-    """Acceleration g sin α (m/s²)."""
-    return float(values["slope.gravity_m_per_s2"]) * math.sin(_inclination(scenario, values))
 
 
 def _compute_groove(scenario: ScenarioFile, values: Mapping[str, Any]) -> Groove | None:

@@ -14,8 +14,8 @@ from .._support.environment import import_extra
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..statistics import percentile_interval
-from .parameter import Parameter, bounds_of
-from .result import Identification, Identified, Interval, Profile
+from .parameter import bounds_of
+from .result import Identification, Identified, Profile
 from .search import Progress, step_inside
 from .solution import Solution, best_fit_residuals, values_at
 
@@ -52,7 +52,8 @@ def add_profile_intervals(identification: Identification, solution: Solution, pr
         profile = Profile(parameter.key, np.array([parameter.value(float(u)) for u in place]), rise, limit)
         profiles.append(profile)
         ends = _ends(solution.optimum.place[j], place, rise, limit)
-        parameters[j] = replace(parameters[j], profile_interval=_as_values(parameter, ends))
+        low, high = (None if end is None else parameter.value(end) for end in ends)
+        parameters[j] = replace(parameters[j], profile_interval=(low, high))
     method = Message("profiles: others refitted by {refits} Gauss-Newton steps at each value", refits=REFITS)
     return replace(
         identification,
@@ -122,12 +123,6 @@ def _ends(best: float, place: FloatArray, rise: FloatArray, limit: float) -> tup
         inside = len(root) > 1 and root[0] <= target <= root[-1]
         ends.append(float(PchipInterpolator(root, place)(target)) if inside else None)
     return ends[0], ends[1]
-
-
-def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) -> Interval:
-    """Convert both ends from the scale of the search to the parameter's unit."""
-    low, high = (None if end is None else parameter.value(end) for end in ends)
-    return low, high
 
 
 def add_posterior_intervals(

@@ -143,11 +143,7 @@ def default_search(key: str, start: float) -> Search:
     low, high = (search.lower + start, search.upper + start) if search.about else (search.lower, search.upper)
     least = own.lowest + (1e-6 * search.size if own.above else 0.0)
     return Search(
-        search.size,
-        min(max(low, least), start),
-        max(min(high, own.highest), start),
-        search.about,
-        search.logarithmic,
+        search.size, min(max(low, least), start), max(min(high, own.highest), start), search.about, search.logarithmic
     )
 
 

@@ -17,15 +17,9 @@ from .glide import Glide, SlopeLine, passage_times, planes, slope_line
 from .problem import Fit, Kind, Values, run_values
 
 USED_KEYS: Final = (
-    "friction.mu_0",
-    "friction.mu_1_s_per_m",
-    "drag.drag_area_m2",
-    "drag.air_density_kg_per_m3",
-    "start.speed_m_per_s",
-    "sledge.mass_kg",
-    "slope.angle_deg",
-    "slope.gravity_m_per_s2",
-)
+    "friction.mu_0", "friction.mu_1_s_per_m", "drag.drag_area_m2", "drag.air_density_kg_per_m3", "start.speed_m_per_s",
+    "sledge.mass_kg", "slope.angle_deg", "slope.gravity_m_per_s2",
+)  # fmt: skip
 """Keys that the times depend on."""
 NOMINAL_SD: Final = 0.01
 """Standard deviation (s) if none is stated; it cancels, because the noise is then estimated from the residuals."""
@@ -87,11 +81,8 @@ class PhotoCellTimes:
     @property
     def points(self) -> int:
         """Number of passages, without those at the start of a clock that starts there."""
-        return sum(len(run.station) for run in self.cells.runs) - self._count_of_start_cells
-
-    @property
-    def _count_of_start_cells(self) -> int:
-        return 0 if self.clock_is_free else sum(float(run.station[0]) == 0.0 for run in self.cells.runs)
+        at_start = 0 if self.clock_is_free else sum(float(run.station[0]) == 0.0 for run in self.cells.runs)
+        return sum(len(run.station) for run in self.cells.runs) - at_start
 
     @property
     def nuisances(self) -> int:

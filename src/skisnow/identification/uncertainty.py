@@ -99,10 +99,6 @@ class Uncertainty:
     groups: tuple[tuple[int, ...], ...]
     alone: FloatArray
 
-    def would_be_known(self, j: int) -> bool:
-        """True if the data would determine parameter j if all others were known."""
-        return bool(self.factor * self.alone[j] <= WIDEST_HALF_INTERVAL)
-
     @property
     def standard_errors(self) -> FloatArray:
         """Standard errors (p,)."""
@@ -241,7 +237,7 @@ def model_warning(correlation: float) -> str:
 
 def _why_open(parameters: Sequence[Parameter], spread: Uncertainty, j: int) -> str:
     """Reason why parameter j is not determined, and a remedy."""
-    if not spread.would_be_known(j):
+    if spread.factor * spread.alone[j] > WIDEST_HALF_INTERVAL:  # not even with all others known
         return _single_help(parameters[j])
     close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > REPORTED_PAIR_CORRELATION]
     if not close:

@@ -9,7 +9,6 @@ import numpy as np
 from skisnow import read_ski, read_snow
 from skisnow.forces.friction import read_friction_file
 from skisnow.identification.data import _read_site, collect_data, start_values
-from skisnow.identification.fitting import _is_clock_free
 from skisnow.identification.parameter import parameter_table
 from skisnow.identification.problem import expand_keys
 from skisnow.scenario import load_scenario, read_profile, read_terrain, scenario_file, scenario_text
@@ -118,7 +117,6 @@ def _read_identify(folder: Path) -> object:
     path = folder / "identify.toml"
     given = load_input(path)
     own = given_parameters(given.identify)
-    _is_clock_free(given, None)
     _read_site(given.identify.get("site", {"fall_line_azimuth_deg": 0}))
     asked = scenario_file(path)
     read = collect_data(given, asked, [folder / "cells.csv"], ["friction.mu_0"])

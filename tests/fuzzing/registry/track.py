@@ -67,14 +67,14 @@ def _read_line(folder: Path) -> object:
     return read_line(folder / "line.csv", read_course(folder / "course.csv"), (0.0, 0.0))
 
 
-_DATA = ("identification.data:_head", "identification.data_tables:read_table")
+_DATA = ("identification.data:_head", "identification.data_tables:_read_rows")
 READERS = (
     *map(_track, FILES),
     single_file("photo cells", _CELLS, read_data, TABLE, *_DATA, target="cells.csv"),
     single_file("grooves", _GROOVES, read_data, TABLE, *_DATA, target="grooves.csv"),
     single_file(
         "course.csv", _course_folder, lambda path: repr(read_course(path)), TABLE,
-        "track.course.course_file:_read_rows", "_support.spreadsheet_text:csv_rows",
+        "track.course.course_file:read_course", "_support.spreadsheet_text:csv_rows",
     ),
     single_file(
         "course.gpx", _course_folder, lambda path: repr(read_course(path)), XML,
