@@ -34,16 +34,14 @@ def test_circle_without_noise(radius: float) -> None:
 @pytest.mark.slow
 def test_intervals_on_a_noisy_circle_cover_as_often_as_they_say() -> None:
     """One point of each of 400 tracks, 0.95 ± 0.0109 by chance: three of these either way."""
-    covered = {"heading": 0, "curvature": 0, "radius": 0}
+    covered = {"heading": 0, "curvature": 0}
     for seed in range(400):
         motion = track_motion(track(circle(RADIUS, SPEED, duration=6.0), noise=NOISE, seed=seed))
         point = 15 + seed % 30
         low, high = (float(end[point]) for end in motion.curvature_interval())
-        least, greatest = (float(end[point]) for end in motion.turn_radius_interval())
         apart = motion.heading[point] - SPEED * motion.time[point] / RADIUS
         covered["heading"] += abs(apart) < 1.96 * motion.heading_sd[point]
         covered["curvature"] += low < 1.0 / RADIUS < high
-        covered["radius"] += least < RADIUS < greatest
     for share in (count / 400.0 for count in covered.values()):
         assert share == pytest.approx(0.95, abs=0.033)
 
@@ -73,12 +71,12 @@ def test_standard_error_inside_is_that_of_the_textbook() -> None:
 
 
 def test_straight_line_may_be_straight() -> None:
-    """Its radius is infinite within the interval at 95 % of points; 5 % over some 30 independent windows may not be."""
+    """Its curvature is 0 within the interval at 95 % of points; 5 % over some 30 independent windows may not be."""
     straight = np.stack([10.0 * 0.1 * np.arange(300), np.zeros(300)], axis=1)
     motion = track_motion(track(straight, noise=NOISE, seed=3))
-    least, greatest = motion.turn_radius_interval()
-    assert np.mean(np.isinf(greatest)) > 0.85
-    assert np.median(least) > 100.0
+    low, high = motion.curvature_interval()
+    assert np.mean(low * high <= 0.0) > 0.85
+    assert np.median(np.maximum(np.abs(low), np.abs(high))) < 0.01
 
 
 def test_clothoid_has_a_curvature_that_grows_with_the_way() -> None:

@@ -63,14 +63,6 @@ class TrackMotion(ShownFields):
         half = INTERVAL_FACTOR * self.curvature_sd
         return self.curvature - half, self.curvature + half
 
-    def turn_radius_interval(self) -> tuple[FloatArray, FloatArray]:
-        """Minimum and maximum |turn radius| (n,), (n,) (m) of the 95 % interval; infinite if it can be straight."""
-        low, high = self.curvature_interval()
-        most = np.maximum(np.abs(low), np.abs(high))
-        least = np.where(low * high <= 0.0, 0.0, np.minimum(np.abs(low), np.abs(high)))
-        with np.errstate(divide="ignore"):
-            return 1.0 / most, np.where(np.isnan(most), np.nan, 1.0 / least)
-
 
 def track_motion(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackMotion:
     """Smooth a track and compute its motion.
@@ -85,7 +77,10 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     smoothed = smooth_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
     recorded, speed_source = _recorded_speed(track)
-    path = _estimate_path(track, smoothed) if speed_source == "fitted" else None
+    path = None
+    if speed_source == "fitted":
+        use, segment = smoothed.usable, segments(track)
+        path = estimate_path(track.time[use], track.place[use], smoothed.part[use], segment[use])
     computed = fitted if path is None else path.speed_at(np.maximum.accumulate(track.time))
     speed = np.where(np.isfinite(recorded), recorded, computed)
     arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source, path)
@@ -101,11 +96,6 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
         track.time, arc_length, speed, heading, heading_sd, curvature, curvature_sd, radius, radius_sd, smoothed,
         speed_source, arc_length_source, path,
     )  # fmt: skip
-
-
-def _estimate_path(track: Track, smoothed: SmoothedTrack) -> PathEstimate | None:
-    chosen = smoothed.usable
-    return estimate_path(track.time[chosen], track.place[chosen], smoothed.part[chosen], segments(track)[chosen])
 
 
 def _recorded_speed(track: Track) -> tuple[FloatArray, SpeedSource]:
@@ -134,11 +124,7 @@ def _recorded_speed(track: Track) -> tuple[FloatArray, SpeedSource]:
 
 
 def _arc_length(
-    track: Track,
-    smoothed: SmoothedTrack,
-    speed: FloatArray,
-    speed_source: SpeedSource,
-    path: PathEstimate | None,
+    track: Track, smoothed: SmoothedTrack, speed: FloatArray, speed_source: SpeedSource, path: PathEstimate | None
 ) -> tuple[FloatArray, ArcLengthSource]:
     """Arc length (n,) by the odometer, else by the recorded speed, else of the estimated path; and its source."""
     if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:

@@ -138,7 +138,7 @@ def estimate_path(
     weighted = likely_parameters(excerpt) if np.any(excerpt.place != 0.0) else []
     if not weighted:
         return None
-    nodes = sum(_node_count(at, scales.longest_step) for at, _ in pieces)
+    nodes = sum(int(np.sum(np.maximum(1, np.ceil(np.diff(at) / scales.longest_step)))) + 1 for at, _ in pieces)
     samples = int(np.clip(_MOST_NUMBERS / nodes, *_SAMPLES))
     fits = min(_NODES_FITTED / nodes, _PARTS_FITTED / len(pieces))
     drawn = _draw_parameters(weighted, int(np.clip(fits, *_FITS)), samples, rng)
@@ -146,10 +146,6 @@ def estimate_path(
     if any(piece is None for piece in samples_of_pieces):
         return None
     return _join(time, place, part, segment, [piece for piece in samples_of_pieces if piece is not None], rng)
-
-
-def _node_count(time: FloatArray, longest_step: float) -> int:
-    return int(np.sum(np.maximum(1, np.ceil(np.diff(time) / longest_step)))) + 1
 
 
 def _average_close_points(time: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -213,16 +209,12 @@ def _piece_samples(
             fit = model.fit(parameters, model.initial_state(parameters.place_noise))
             if fit is None:
                 return None
-            speeds_of_window += [_samples(fit, number, rng)[:, nodes] for number in _chunks(count, len(fit.state))]
+            most = max(1, int(4e6 / fit.state.size))  # samples at a time
+            for first_sample in range(0, count, most):
+                speeds_of_window.append(_samples(fit, min(most, count - first_sample), rng)[:, nodes])
         times.append(model.time[nodes])
         speeds.append(np.concatenate(speeds_of_window))
     return np.concatenate(times), np.concatenate(speeds, axis=1)
-
-
-def _chunks(count: int, nodes: int) -> list[int]:
-    """Numbers of samples at a time."""
-    most = max(1, int(4e6 / (STATES * nodes)))
-    return [min(most, count - begin) for begin in range(0, count, most)]
 
 
 def _samples(fit: PathFit, count: int, rng: np.random.Generator) -> FloatSamples:

@@ -103,8 +103,7 @@ def geodetic(place: FloatArray) -> FloatArray:
     latitude = reduced
     for _ in range(_ROUNDS):
         latitude = np.arctan2(
-            z + beyond * np.sin(reduced) ** 3,
-            axis_distance - _ECCENTRICITY2 * SEMI_MAJOR_AXIS * np.cos(reduced) ** 3,
+            z + beyond * np.sin(reduced) ** 3, axis_distance - _ECCENTRICITY2 * SEMI_MAJOR_AXIS * np.cos(reduced) ** 3
         )
         reduced = np.arctan2((1.0 - FLATTENING) * np.sin(latitude), np.cos(latitude))
     sine, cosine = np.sin(latitude), np.cos(latitude)

@@ -97,7 +97,7 @@ def read_track(
         )
     path = Path(path)
     data = _read_bytes(path)
-    recording = _read_recording(data, path.name, kind or _guess_format(data, path.suffix))
+    recording = _read_recording(data, path.name, kind or recognise_format(data, path.suffix))
     return build_track(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
 
 
@@ -110,7 +110,7 @@ def recognise_format(data: bytes, suffix: str) -> TrackFormat:
     head = data[:_HEAD]
     signs: tuple[tuple[TrackFormat, object], ...] = (
         ("fit", data[8:12] == b".FIT"),
-        ("ubx", _UBX_NAVIGATION in data),
+        ("ubx", _UBX_NAVIGATION in data and (has_places(data) or not SENTENCE.search(data))),
         ("gpx", re.search(rb"<(?:\w+:)?gpx[\s>]", head)),
         ("tcx", b"<TrainingCenterDatabase" in head),
         ("rtklib", HEADER.search(head.decode("latin-1").replace("\r", "\n"))),
@@ -120,20 +120,21 @@ def recognise_format(data: bytes, suffix: str) -> TrackFormat:
     return next((kind for kind, sign in signs if sign), SUFFIXES.get(suffix.lower(), "csv"))
 
 
-def _guess_format(data: bytes, suffix: str) -> TrackFormat:
-    """The format of the content; sentences in a file with UBX frames if no NAV-PVT among them has a place."""
-    kind = recognise_format(data, suffix)
-    return "nmea" if kind == "ubx" and not has_places(data) and SENTENCE.search(data) else kind
-
-
 def _read_bytes(path: Path) -> bytes:
     try:
         # reading a pipe would block, and a folder cannot be read
         data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
+        reason: str = Message("it is not a plain file")
     except OSError as error:
-        raise _unreadable_error(path, error.strerror or str(error)) from error
+        data, reason = None, error.strerror or str(error)
     if data is None:
-        raise _unreadable_error(path, Message("it is not a plain file"))
+        raise track_error(
+            "unreadable_file",
+            str(path),
+            value=reason,
+            allowed=Message("a plain file that may be read"),
+            action=Message("Check the path."),
+        )
     if not data.strip():
         raise track_error(
             "empty_file",
@@ -142,16 +143,6 @@ def _read_bytes(path: Path) -> bytes:
             action=Message("The file is empty; was anything recorded?"),
         )
     return data.decode("utf-16", errors="replace").encode() if data.startswith(_UTF_16) else data
-
-
-def _unreadable_error(path: Path, reason: str) -> Exception:
-    return track_error(
-        "unreadable_file",
-        str(path),
-        value=reason,
-        allowed=Message("a plain file that may be read"),
-        action=Message("Check the path."),
-    )
 
 
 def _read_recording(data: bytes, name: str, kind: TrackFormat) -> Recording:

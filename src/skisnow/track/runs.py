@@ -98,7 +98,9 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     lifts = [_make_stretch(track, motion, height, *climb) for climb in climbs]
     spans = (_descent(motion, smooth, corners, area) for area in _areas_between(ascents, len(track)))
     runs = [_make_stretch(track, motion, height, *ends) for ends in spans if ends is not None]
-    return Day(tuple(run for run in runs if _is_run(run)), tuple(lifts), "height", remarks)
+    # a run is longer than its descent: a height that drifts at rest is none
+    runs = [run for run in runs if run.distance >= max(LEAST_DISTANCE, run.descent or 0.0)]
+    return Day(tuple(runs), tuple(lifts), "height", remarks)
 
 
 def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[str, ...]]:
@@ -212,11 +214,6 @@ def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float |
     speeds = motion.speed[inside][track.usable[inside]]
     speeds = speeds[np.isfinite(speeds)]
     return float(speeds.max()) if len(speeds) else None, None
-
-
-def _is_run(stretch: Stretch) -> bool:
-    """True for a run: long enough, and longer than its descent (a height that drifts at rest is not a descent)."""
-    return stretch.distance >= max(LEAST_DISTANCE, stretch.descent or 0.0)
 
 
 def turning_points(values: FloatArray, least: float) -> list[int]:

@@ -240,25 +240,17 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
     if angle is None and falls is not None and other is not None and (steeper or (apart and other.error < DEGREE)):
         angle, source = max(falls, 0.0), f"from the heights of {measured.name}"
     if angle is None:
-        return LaidTracks(simulated, measured, warnings=(_unknown_angle_warning(simulated),) if apart else ())
+        unknown = (
+            f"the slope's angle is unknown: metres of {simulated.name} on the slope are compared with shorter metres "
+            "on the map. Give the slope's angle"
+        )
+        return LaidTracks(simulated, measured, warnings=(unknown,) if apart else ())
     warnings: tuple[str, ...] = ()
-    if other is not None and abs(other.angle - angle - _fall_in_own_axes(simulated, own)) > CLEARLY * max(
-        other.error, DEGREE
-    ):
+    # in its own axes a track falls along a profile, whose z is the height, but not in a slope's axes
+    own_fall = own.angle if own is not None and not simulated.slope_angle else 0.0
+    if other is not None and abs(other.angle - angle - own_fall) > CLEARLY * max(other.error, DEGREE):
         warnings = (
             f"{measured.name} falls by {other.angle / DEGREE:.1f}°, the slope by {angle / DEGREE:.1f}° ({source}): "
             "check the slope's angle and the heights, or compare from above",
         )
     return LaidTracks(lay_on_slope(simulated, angle) if angle else simulated, measured, angle, source, warnings)
-
-
-def _fall_in_own_axes(track: Track, own: Inclination | None) -> float:
-    """Inclination of a track in its own axes, as along a profile, whose z is the height; 0 in a slope's axes."""
-    return own.angle if own is not None and not track.slope_angle else 0.0
-
-
-def _unknown_angle_warning(track: Track) -> str:
-    return (
-        f"the slope's angle is unknown: metres of {track.name} on the slope are compared with shorter metres on the "
-        "map. Give the slope's angle"
-    )

@@ -127,7 +127,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
         None if length is None else (length.low, length.high),
         None if motion.path is None else motion.path.length(with_heights=False),
         PlaceNoise(place_noise, is_bound=False) if place_noise else estimate_place_noise(track, motion.smoothed),
-        (*_reading_remarks(track), *_remarks(track, motion, distances), *day.remarks),
+        (*track.notes, *_remarks(track, motion, distances), *day.remarks),
     )  # fmt: skip
 
 
@@ -146,13 +146,8 @@ def _distances_by_source(track: Track, motion: TrackMotion) -> dict[str, float]:
     return {name: float(arc_length[-1] - arc_length[0]) for name, arc_length in ways.items()}
 
 
-def _reading_remarks(track: Track) -> tuple[str, ...]:
-    """Remarks on how the file was read, and on records that are not used."""
-    return (*track.notes, *(f"Not used: {count} {words}." for words, count in track.left_out.items()))
-
-
 def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
-    remarks = []
+    remarks = [f"Not used: {count} {words}." for words, count in track.left_out.items()]
     chosen = distances[motion.arc_length_source]
     for name, distance in distances.items():
         if chosen > 0.0 and abs(distance - chosen) > _APART * chosen:

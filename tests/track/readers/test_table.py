@@ -164,7 +164,7 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
     [
         ("", ["empty_file"]),
         (" \n\n", ["empty_file"]),
-        ("time_s,x_m,y_m\n", ["empty_file", "header only"]),
+        ("time_s,x_m,y_m\n", ["empty_file", "no point"]),
         ("My run;;\ntime_s;x_m;why\n0;1;2\n", ["missing_column", "row 1:", "'My run'", "semicolon"]),
         (
             "Source;Mini\nZeit [ms];x;y\n0;1;2\nspät;1;2\n",
@@ -173,7 +173,7 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("time_s|x_m|y_m\n0|1|2\n", ["missing_column", "row 1:", "'time_s|x_m|y_m'", "semicolon"]),
         ("time_s,x_m\n0,1\n", ["missing_column", "column y_m", "time_s, x_m"]),
         ("time_s,x_m,why\n0,1,2\n", ["missing_column", "column y_m"]),
-        ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "'latt'"]),
+        ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "time, latt, lon"]),
         ("x_m,y_m\n0,1\n", ["missing_column", "column time_s"]),
         (
             "time,lat,lon,Altitude [fathoms]\n0,46,7,900\n",

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError, require_choice
-from ..._support.messages import Message, template
+from ..._support.messages import Message
 from ..._support.units import Facts, Shown, ShownFields, amount
 from ...parameters import Allowed, Label, Quantity, Word, require_declared
 
@@ -34,22 +34,6 @@ class GateLine(NamedTuple):
     along: FloatArray
     across: FloatArray
     width: float
-
-
-_WRONG_SIDE: Final = {
-    "left": template(
-        'gate {name}: seen down the course the outer pole is to the right of the turning pole, and side is "left". '
-        "Change the side, or exchange the poles"
-    ),
-    "right": template(
-        'gate {name}: seen down the course the outer pole is to the left of the turning pole, and side is "right". '
-        "Change the side, or exchange the poles"
-    ),
-}
-_NOT_FINITE: Final = {
-    "turning": template("gate {name}: the turning pole is at {place}; both must be finite, in m"),
-    "outer": template("gate {name}: the outer pole is at {place}; both must be finite, in m"),
-}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -86,12 +70,16 @@ class Course(Shown):
     gates: tuple[Gate, ...]
     source: Annotated[
         str,
-        Word("course.name", "a course of the catalogue", word_of=name_in_catalogue),
+        Word(
+            "course.name",
+            "a course of the catalogue",
+            word_of=lambda source: source if source in course_names() else None,
+        ),
         Word(
             "course.file",
             "gates: CSV with gate, x_m, y_m, side and, where it is known, outer_x_m, outer_y_m; or GPX with a waypoint "
             "for each",
-            word_of=file_of_course,
+            word_of=lambda source: None if source in course_names() else source,
             names_file=True,
         ),
     ] = Message("given as numbers")
@@ -143,15 +131,12 @@ class Course(Shown):
             raise ParameterError("two gates are called {name!r}; give each a different name or number").tag(
                 "repeated_name", name=name
             )
-        for gate in self.gates:
-            if not max(map(abs, (*gate.turning, *(gate.outer or ())))) <= FARTHEST:
-                raise ParameterError(
-                    "gate {name} is at {place}. Allowed: coordinates of finite numbers, at most {farthest:g} m. "
-                    "Correct them, or their unit"
-                ).tag("not_a_number", name=gate.name, place=gate.turning, farthest=FARTHEST)
         for gate, line, along in zip(self.gates, self.lines, self._chords(), strict=True):
             if float(line.along @ along) < AGAINST:
-                raise ParameterError(_WRONG_SIDE[gate.side]).tag("wrong_side", name=gate.name)
+                raise ParameterError(
+                    "gate {name}: seen down the course the outer pole is not on the side of the turning pole that is "
+                    'passed, "{side}". Change the side, or exchange the poles'
+                ).tag("wrong_side", name=gate.name, side=gate.side)
 
     @property
     def lines(self) -> tuple[GateLine, ...]:
@@ -221,16 +206,6 @@ def course_place(name: str) -> Path:
     return Path(str(_FOLDER / f"{name}.csv"))
 
 
-def name_in_catalogue(source: str) -> str | None:
-    """The source of a course if it is built in, otherwise None."""
-    return source if source in course_names() else None
-
-
-def file_of_course(source: str) -> str | None:
-    """The source of a course if it is a file, otherwise None."""
-    return None if source in course_names() else source
-
-
 Side: TypeAlias = Literal["left", "right"]
 Point: TypeAlias = tuple[float, float]
 
@@ -268,9 +243,12 @@ class Gate(ShownFields):
 
     def __post_init__(self) -> None:
         require_choice(f"gate {self.name}: side", self.side, get_args(Side))
-        for pole, place in (("turning", self.turning), ("outer", self.outer)):
-            if place is not None and not all(math.isfinite(coordinate) for coordinate in place):
-                raise ParameterError(_NOT_FINITE[pole]).tag("not_a_number", name=self.name, place=place)
+        for place in (self.turning, self.outer):
+            if place is not None and not all(abs(coordinate) <= FARTHEST for coordinate in place):
+                raise ParameterError(
+                    "gate {name} is at {place}. Allowed: coordinates of finite numbers, at most {farthest:g} m. "
+                    "Correct them, or their unit"
+                ).tag("not_a_number", name=self.name, place=place, farthest=FARTHEST)
         if self.outer is not None and not self.width > 0.0:
             raise ParameterError("gate {name}: both poles are at {turning}; move one, or remove the outer pole").tag(
                 "same_place", name=self.name, turning=self.turning

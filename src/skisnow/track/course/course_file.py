@@ -83,15 +83,11 @@ def read_course(
         )
     try:
         if path.suffix.lower() != ".gpx":
-            return Course(gates=tuple(_gate_of_row(row) for row in _read_rows(path)), **options)
-        waypoints = read_waypoints(path)
-        return _geodetic_course(waypoints, latitude_deg, longitude_deg, options)
+            rows = csv_rows(path, _COLUMNS, further=_OUTER, action=_ACTION)
+            return Course(gates=tuple(map(_gate_of_row, rows)), **options)
+        return _geodetic_course(read_waypoints(path), latitude_deg, longitude_deg, options)
     except ParameterError as error:
         raise error if str(error).startswith(str(path)) else error.at(path) from error
-
-
-def _read_rows(path: Path) -> Iterator[CsvRow]:
-    return csv_rows(path, _COLUMNS, further=_OUTER, action=_ACTION)
 
 
 def _gate_of_row(row: CsvRow) -> Gate:
@@ -255,31 +251,18 @@ def _waypoint_number(path: str | Path, row: int, what: str, text: str | None, li
     ).tag("not_a_number", path=path, row=row, what=what, text=text, lowest=-limit, limit=limit)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rules:
-    """Limits of one discipline.
-
-    article: article of the International Ski Competition Rules (ICR), book IV.
-    width: minimum and maximum width of a gate (m).
-    least_distance: minimum distance between the nearest poles of successive gates (m).
-    turns_per_drop: minimum and maximum number of changes of direction per metre of drop.
-    """
-
-    article: str
-    width: tuple[float, float]
-    least_distance: float
-    turns_per_drop: tuple[float, float]
-
-
-RULES: Final[dict[Discipline, Rules | None]] = {
-    "giant-slalom": Rules(article="FIS ICR 901.2", width=(4.0, 8.0), least_distance=10.0, turns_per_drop=(0.11, 0.15)),
-    "slalom": None,
-}
-"""Rules by discipline; None: nothing is checked, because no citable text was available."""
+_ARTICLE: Final = "FIS ICR 901.2"
+"""Rules of giant slalom, in book IV of the International Ski Competition Rules."""
+_WIDTH: Final = (4.0, 8.0)
+"""Minimum and maximum width of a gate (m)."""
+_LEAST_DISTANCE: Final = 10.0
+"""Minimum distance between the nearest poles of successive gates (m)."""
+_TURNS_PER_DROP: Final = (0.11, 0.15)
+"""Minimum and maximum number of changes of direction per metre of drop."""
 
 
 def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, ...]:
-    """Sentences on departures of a course from the rules of its discipline, which are allowed for training.
+    """Sentences on departures of a giant slalom from its rules, which are allowed for training.
 
     course: Course with its discipline.
     drop: Difference in height from the first gate to the last (m); None if unknown.
@@ -287,30 +270,30 @@ def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, 
     Notes
     -----
     Giant slalom: gates 4 to 8 m wide, 10 m or more between the nearest poles of successive gates (ICR 901.2.3), and
-    changes of direction for 11 to 15 % of the metres of drop (901.2.4; of the whole course, start to finish).
+    changes of direction for 11 to 15 % of the metres of drop (901.2.4; of the whole course, start to finish). Slalom is
+    not checked, because no citable text was available.
     """
-    rules = None if course.discipline is None else RULES[course.discipline]
-    return () if rules is None else tuple(_departures_from_rules(course, rules, drop))
+    return tuple(_departures_from_rules(course, drop)) if course.discipline == "giant-slalom" else ()
 
 
-def _departures_from_rules(course: Course, rules: Rules, drop: float | None) -> Iterator[str]:
-    low, high = rules.width
+def _departures_from_rules(course: Course, drop: float | None) -> Iterator[str]:
+    low, high = _WIDTH
     for gate in course.gates:
         if gate.outer is not None and not low <= gate.width <= high:
-            yield f"gate {gate.name} is {gate.width:.2f} m wide; {rules.article} asks for {low:g} to {high:g} m"
+            yield f"gate {gate.name} is {gate.width:.2f} m wide; {_ARTICLE} asks for {low:g} to {high:g} m"
     for before, gate in zip(course.gates, course.gates[1:], strict=False):
         poles = [np.array([pole for pole in (one.turning, one.outer) if pole is not None]) for one in (before, gate)]
         apart = float(np.linalg.norm(poles[0][:, None] - poles[1][None], axis=2).min())
-        if apart < rules.least_distance:
+        if apart < _LEAST_DISTANCE:
             yield (
-                f"gates {before.name} and {gate.name} are {apart:.2f} m apart; {rules.article} asks for "
-                f"{rules.least_distance:g} m or more between their nearest poles"
+                f"gates {before.name} and {gate.name} are {apart:.2f} m apart; {_ARTICLE} asks for "
+                f"{_LEAST_DISTANCE:g} m or more between their nearest poles"
             )
     if drop is not None and drop > 0.0:
-        least, most = (round(share * drop) for share in rules.turns_per_drop)
+        least, most = (round(share * drop) for share in _TURNS_PER_DROP)
         turns = sum(one.side != other.side for one, other in zip(course.gates, course.gates[1:], strict=False))
         if not least <= turns <= most:
             yield (
-                f"the course changes its direction {turns} times over {drop:.0f} m of drop; {rules.article} asks for "
+                f"the course changes its direction {turns} times over {drop:.0f} m of drop; {_ARTICLE} asks for "
                 f"{least} to {most}"
             )

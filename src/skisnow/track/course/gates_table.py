@@ -4,26 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, get_args
+from typing import Any, Final, NamedTuple, get_args
 
 from ..._support.messages import Message
-from ..._support.spreadsheet_text import CsvRow, csv_rows, csv_text
+from ..._support.spreadsheet_text import csv_rows, csv_text
 from ..._support.user_files.json_text import json_number
 from .passages import CourseResult, GateOutcome
 
-COLUMNS: Final = (
-    "gate",
-    "side",
-    "outcome",
-    "time_s",
-    "split_s",
-    "speed_m_per_s",
-    "clearance_m",
-    "x_m",
-    "y_m",
-)
+COLUMNS: Final = ("gate", "side", "outcome", "time_s", "split_s", "speed_m_per_s", "clearance_m", "x_m", "y_m")
 DOUBTFUL: Final = 0.005
 """Uncertainty (s) of a time at a gate above which a warning is given: hundredths of a second are then unknown."""
 
@@ -85,9 +74,8 @@ APART: Final = 0.05
 GAP_COLUMNS: Final = ("gate", "outcome", "time_s", "other_outcome", "other_time_s", "gap_s", "lost_s")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GateGap:
-    """One gate of two runs.
+class GateGap(NamedTuple):
+    """One gate of two runs, in the order of `GAP_COLUMNS`.
 
     gate: name of the gate.
     outcome, other_outcome: outcome of each run, as in gates.csv.
@@ -98,8 +86,8 @@ class GateGap:
 
     gate: str
     outcome: str
-    other_outcome: str
     time: float | None
+    other_outcome: str
     other_time: float | None
     gap: float | None
     lost: float | None
@@ -122,12 +110,8 @@ def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str
     for row, other_row in zip(rows, other, strict=True):
         time, other_time = row["time_s"], other_row["time_s"]
         gap = None if time is None or other_time is None else time - other_time
-        gaps.append(
-            GateGap(
-                gate=row["gate"], outcome=row["outcome"], other_outcome=other_row["outcome"], time=time,
-                other_time=other_time, gap=gap, lost=None if gap is None else gap - before,
-            )
-        )  # fmt: skip
+        lost = None if gap is None else gap - before
+        gaps.append(GateGap(row["gate"], row["outcome"], time, other_row["outcome"], other_time, gap, lost))
         before = before if gap is None else gap
     return tuple(gaps)
 
@@ -140,35 +124,22 @@ def _are_gates_at_same_places(one: list[dict[str, Any]], other: list[dict[str, A
 
 
 def _gate_rows(place: Path) -> list[dict[str, Any]]:
+    table = []
     columns = ("gate", "outcome", "time_s", "x_m", "y_m")
-    rows = csv_rows(place, columns, action=Message("Simulate the run again with --out."))
-    return [_parse_gate_row(row) for row in rows]
-
-
-def _parse_gate_row(row: CsvRow) -> dict[str, Any]:
-    if row.cells["outcome"] not in get_args(GateOutcome):
-        raise row.refused(
-            "outcome", Message("Must be one of {choices}.", choices=get_args(GateOutcome)), code="unknown_choice"
-        )
-    return {
-        **row.cells,
-        "time_s": row.number("time_s") if row.cells["time_s"] else None,
-        "x_m": row.number("x_m"),
-        "y_m": row.number("y_m"),
-    }
+    for row in csv_rows(place, columns, action=Message("Simulate the run again with --out.")):
+        if row.cells["outcome"] not in get_args(GateOutcome):
+            allowed = Message("Must be one of {choices}.", choices=get_args(GateOutcome))
+            raise row.refused("outcome", allowed, code="unknown_choice")
+        numbers = {name: row.number(name) if row.cells[name] or name != "time_s" else None for name in columns[2:]}
+        table.append({**row.cells, **numbers})
+    return table
 
 
 def gaps_csv(gaps: Sequence[GateGap]) -> str:
     """Table with a row for each gate and `GAP_COLUMNS` as text; empty cells for missing values."""
-    return csv_text([GAP_COLUMNS, *(row.values() for row in gap_rows(gaps))])
+    return csv_text([GAP_COLUMNS, *gaps])
 
 
 def gap_rows(gaps: Sequence[GateGap]) -> list[dict[str, Any]]:
     """Rows with `GAP_COLUMNS`; None for missing values."""
-    return [
-        {
-            "gate": gap.gate, "outcome": gap.outcome, "time_s": gap.time, "other_outcome": gap.other_outcome,
-            "other_time_s": gap.other_time, "gap_s": gap.gap, "lost_s": gap.lost,
-        }
-        for gap in gaps
-    ]  # fmt: skip
+    return [dict(zip(GAP_COLUMNS, gap, strict=True)) for gap in gaps]

@@ -262,18 +262,6 @@ def _reached(first: float, last: float, rate: float, last_rate: float) -> float:
     return high
 
 
-_OTHER_UNIT: Final = {
-    True: template(
-        "the track {name} is in degrees, the course {source} in metres. Give the course as the track is: GPX with "
-        "waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
-    ),
-    False: template(
-        "the track {name} is in metres, the course {source} in degrees. Give the course as the track is: GPX with "
-        "waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
-    ),
-}
-
-
 def track_point(track: Track, course: Course) -> MovingPoint:
     """Moving point of a track: its usable horizontal places at rising times, from the course's origin.
 
@@ -282,7 +270,10 @@ def track_point(track: Track, course: Course) -> MovingPoint:
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):
-        raise ParameterError(_OTHER_UNIT[degrees]).tag("different_units", name=track.name, source=course.source)
+        raise ParameterError(
+            "of the track {name} and the course {source} one is in degrees, the other in metres. Give the course as "
+            "the track is: GPX with waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
+        ).tag("different_units", name=track.name, source=course.source)
     if course.latitude_deg is not None and course.longitude_deg is not None and degrees:
         track = track.at_origin(GeodeticPoint(course.latitude_deg, course.longitude_deg))
     good = track.usable & np.isfinite(track.place[:, :2]).all(axis=1)

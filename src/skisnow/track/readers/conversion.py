@@ -10,7 +10,6 @@ import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.messages import Message
-from ...parameters import Quantity
 from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
 from ..track import FASTEST, GAP_FACTOR, Track, point_flags
 from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
@@ -58,7 +57,9 @@ def build_track(
         place=place,
         speed=speed,
         time_scale=recording.time_scale,
-        frame=_frame_text(recording, at),
+        frame=recording.axes_in_words
+        if at is None
+        else f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}",
         velocity=velocity,
         place_sd=recording.place_sd,
         speed_sd=recording.speed_sd,
@@ -163,12 +164,6 @@ def _first(points: FloatArray) -> GeodeticPoint:
     return GeodeticPoint(float(points[0, 0]), float(points[0, 1]), float(heights[0]) if len(heights) else 0.0)
 
 
-def _frame_text(recording: Recording, at: GeodeticPoint | None) -> str:
-    if at is None:
-        return recording.axes_in_words
-    return f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}"
-
-
 def _require_points(recording: Recording) -> None:
     if not len(recording.time):
         raise track_error(
@@ -215,26 +210,20 @@ def _time_text(recording: Recording, point: int) -> str:
 def _require_in_range(recording: Recording) -> None:
     """Reject numbers that are impossible for a ski run in any unit; they could overflow."""
     places = GEODETIC if recording.is_geodetic else LOCAL
-    for axis, quantity in enumerate(places):
-        column = recording.columns.get("xyz"[axis], quantity.field)
-        _require_within(recording, column, recording.place[:, axis], quantity)
-    for name, quantity in MOTION.items():
-        values = getattr(recording, name)
-        components = [] if values is None else [values] if values.ndim == 1 else list(values.T)
-        for component in components:
-            _require_within(recording, name, component, quantity)
-
-
-def _require_within(recording: Recording, column: str, values: FloatArray, quantity: Quantity) -> None:
-    outside = np.flatnonzero(quantity.outside(values))
-    if len(outside):
-        point = int(outside[0])
+    checked = [(recording.columns.get(axis, key.field), recording.place[:, place], key)
+               for place, (axis, key) in enumerate(zip("xyz", places, strict=True))]  # fmt: skip
+    columns = ((name, getattr(recording, name), quantity) for name, quantity in MOTION.items())
+    for column, values, quantity in (*checked, *columns):
+        outside = np.argwhere(quantity.outside(np.zeros(0) if values is None else values))
+        if not len(outside):
+            continue
+        point = int(outside[0][0])
         raise track_error(
             "out_of_range",
             recording.name,
             place=recording.places_in_file[point],
             column=column,
-            value=f"{values[point]:.12g}",
+            value=f"{values[tuple(outside[0])]:.12g}",
             allowed=Message("a number {allowed} {unit}", allowed=quantity.allowed, unit=quantity.unit),
             action=Message("Correct the value; is it in another unit, or in another column?"),
         )
@@ -258,11 +247,7 @@ def fixed_points(recording: Recording, fix: BoolArray) -> tuple[Recording, BoolA
     inside = np.zeros(len(fix), dtype=bool)
     inside[first : last + 1] = True
     ordered = fix | _between_neighbours(recording.time, fix)
-    counts = {
-        BEFORE: first,
-        AFTER: len(fix) - 1 - last,
-        OUT_OF_ORDER: int(np.count_nonzero(inside & ~ordered)),
-    }
+    counts = {BEFORE: first, AFTER: len(fix) - 1 - last, OUT_OF_ORDER: int(np.count_nonzero(inside & ~ordered))}
     left_out = dict(recording.left_out)
     for words, count in counts.items():
         left_out[words] = left_out.get(words, 0) + count

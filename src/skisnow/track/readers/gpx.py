@@ -7,11 +7,10 @@ declares entities is rejected. Heights of GPX are above mean sea level. Routes a
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, timedelta, timezone
-from typing import Final
+from datetime import UTC, datetime
+from typing import Final, NoReturn
 from xml.parsers import expat
 
 import numpy as np
@@ -19,6 +18,7 @@ import numpy as np
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import number
 from .recording import Recording, is_not_finite, track_error
+from .text import moment
 
 DEEPEST: Final = 100
 """Elements within each other; a point with extensions has about seven."""
@@ -26,6 +26,7 @@ MOST_ELEMENTS: Final = 20_000_000
 """A week of points ten times a second, three elements each."""
 _POINT: Final[tuple[str, ...]] = ("gpx", "trk", "trkseg", "trkpt")
 _TCX_POINT: Final[tuple[str, ...]] = ("TrainingCenterDatabase", "Activities", "Activity", "Lap", "Track", "Trackpoint")
+_NUMBERS: Final = ("lat", "lon", "ele", "distance", "speed", "extended speed")
 _OTHERS: Final = ("wpt", "rtept", "trkpt", "Trackpoint")
 """Points of a file; only those of recorded tracks are read."""
 _TEXTS: Final = {key: key for key in ("ele", "time", "speed", "fix")}
@@ -36,18 +37,6 @@ _TCX_TEXTS: Final = {
     "Position/LatitudeDegrees": "lat",
     "Position/LongitudeDegrees": "lon",
 }
-_TIME: Final = re.compile(
-    r"([0-9]{4})-([0-9]{1,2})-([0-9]{1,2})[T ]([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(\.[0-9]{1,15})?"
-    r"([Zz]|[+-][0-9]{2}(?::?[0-9]{2})?)?"
-)
-
-
-class _TooMuchError(Exception):
-    """The file has something that no recorded track has: ``value`` instead of ``allowed``."""
-
-    def __init__(self, value: str, allowed: str) -> None:
-        super().__init__(value)
-        self.value, self.allowed = value, allowed
 
 
 @dataclass(slots=True)
@@ -62,7 +51,8 @@ class _Point:
 class _Reader:
     """Handler of the elements from expat that collects the points."""
 
-    def __init__(self) -> None:
+    def __init__(self, name: str) -> None:
+        self._name = name
         self.points: list[_Point] = []
         self._segment = 0
         self._path: list[str] = []
@@ -80,15 +70,11 @@ class _Reader:
         if self._path == [_TCX_POINT[0]]:
             self._point, self._texts = _TCX_POINT, _TCX_TEXTS
         if len(self._path) > DEEPEST:
-            raise _TooMuchError(
-                Message("{count} elements within each other", count=len(self._path)),
-                Message("at most {most}", most=DEEPEST),
-            )
+            allowed = Message("at most {most}", most=DEEPEST)
+            self._refuse(Message("{count} elements within each other", count=len(self._path)), allowed)
         if self._count > MOST_ELEMENTS:
-            raise _TooMuchError(
-                Message("more than {most} elements", most=MOST_ELEMENTS),
-                Message("at most {most}", most=MOST_ELEMENTS),
-            )
+            allowed = Message("at most {most}", most=MOST_ELEMENTS)
+            self._refuse(Message("more than {most} elements", most=MOST_ELEMENTS), allowed)
         if tuple(self._path) == self._point[:-1]:
             self._segment += 1
         elif tuple(self._path) == self._point:
@@ -111,7 +97,10 @@ class _Reader:
         self._path.pop()
 
     def entity(self, name: str, *_rest: object) -> None:
-        raise _TooMuchError(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
+        self._refuse(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
+
+    def _refuse(self, value: str, allowed: str) -> NoReturn:
+        raise _damage_error(self._name, value, allowed, Message("No device writes such a file; export it again."))
 
     def _key(self) -> str | None:
         """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
@@ -133,11 +122,11 @@ def read_gpx(text: str, name: str) -> Recording:
     """
     points = _read_points(text, name)
     distance = [_metres_or_nan(point, name, place, "distance") for place, point in enumerate(points)]
-    moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
+    moments = [_required_time(point, name, place) for place, point in enumerate(points)]
     return Recording(
         name=name,
         places_in_file=[f"point {place + 1}" for place in range(len(points))],
-        time=np.array([(moment - moments[0]).total_seconds() for moment in moments]),
+        time=np.array([(time - moments[0]).total_seconds() for time in moments]),
         place=np.array([_place(point, name, place) for place, point in enumerate(points)], dtype=float).reshape(-1, 3),
         is_geodetic=True,
         time_scale="UTC",
@@ -148,21 +137,17 @@ def read_gpx(text: str, name: str) -> Recording:
         fix=np.array([point.texts.get("fix") != "none" for point in points], dtype=bool),
         heights="above mean sea level, as recorded",
         segment=np.array([point.segment for point in points], dtype=np.int64),
-        not_finite=np.array([_has_not_finite_text(point) for point in points], dtype=bool),
+        not_finite=np.array([any(is_not_finite(point.texts.get(key, "")) for key in _NUMBERS) for point in points]),
     )
 
 
 def _read_points(text: str, name: str) -> list[_Point]:
-    reader, parser = _Reader(), expat.ParserCreate(namespace_separator="}")
+    reader, parser = _Reader(name), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
     parser.CharacterDataHandler, parser.EntityDeclHandler = reader.text, reader.entity
     try:
         parser.Parse(text.lstrip(), True)
-    except _TooMuchError as error:
-        raise _damage_error(
-            name, error.value, error.allowed, Message("No device writes such a file; export it again.")
-        ) from error
     except expat.ExpatError as error:
         action = Message("The file is damaged or ends too early; export it again.")
         raise _damage_error(name, str(error), "GPX 1.0, GPX 1.1 or TCX", action) from error
@@ -181,10 +166,10 @@ def _damage_error(name: str, value: str, allowed: str, action: str) -> Exception
     return track_error("unreadable_file", name, value=value, allowed=allowed, action=action)
 
 
-def _required_moment(point: _Point, name: str, place: int) -> datetime:
+def _required_time(point: _Point, name: str, place: int) -> datetime:
     text = point.texts.get("time", "")
-    moment = _moment(text)
-    if moment is None:
+    time = moment(text.upper())
+    if time is None:
         raise track_error(
             "not_a_time",
             name,
@@ -194,31 +179,7 @@ def _required_moment(point: _Point, name: str, place: int) -> datetime:
             allowed=Message("a time such as 2022-12-27T15:51:14Z in every point"),
             action=Message("The point has no readable time. A drawn route is not a recorded track."),
         )
-    return moment
-
-
-def _moment(text: str) -> datetime | None:
-    """The time in UTC; a time without zone counts as UTC, as the GPX format defines.
-
-    >>> _moment("2022-12-27T16:51:14.5+01:00").isoformat(), _moment("2022-12-27")
-    ('2022-12-27T15:51:14.500000+00:00', None)
-    """
-    match = _TIME.fullmatch(text)
-    if match is None:
-        return None
-    *whole, second = map(int, match.groups()[:6])
-    since = timedelta(seconds=second, microseconds=int((match[7] or ".")[1:7].ljust(6, "0")))  # a leap second is 60
-    try:
-        return (datetime(*whole, tzinfo=_time_zone(match[8])) + since).astimezone(UTC) if second <= 60 else None  # type: ignore[misc, arg-type]
-    except (ValueError, OverflowError):
-        return None
-
-
-def _time_zone(text: str | None) -> timezone:
-    if text is None or text in "Zz":
-        return UTC
-    size = timedelta(hours=int(text[1:3]), minutes=int(text[3:].strip(":") or "0"))
-    return timezone(-size if text[0] == "-" else size)
+    return time.replace(tzinfo=UTC)  # a time without a zone is in UTC, as the format defines
 
 
 def _place(point: _Point, name: str, place: int) -> tuple[float, float, float]:
@@ -254,8 +215,3 @@ def _number(text: str | None, name: str, place: int, column: str, unit: str) -> 
             action=Message("Correct the point."),
         )
     return value
-
-
-def _has_not_finite_text(point: _Point) -> bool:
-    texts = (point.texts.get(key) for key in ("lat", "lon", "ele", "distance", "speed", "extended speed"))
-    return any(text is not None and is_not_finite(text) for text in texts)

@@ -83,7 +83,8 @@ class _Epoch:
         used = self._take_place(message) if kind in PLACES else True
         if kind == "RMC":
             self._take_speed(_number(message, "spd") * KNOT, _number(message, "cog"))
-            self.day = _date(getattr(message, "date", None)) or self.day
+            day = getattr(message, "date", None)
+            self.day = day if isinstance(day, date) else self.day
         elif kind == "VTG":
             speed = _number(message, "sogk") * KM_PER_H
             self._take_speed(
@@ -127,9 +128,9 @@ def read_nmea(data: bytes, name: str) -> Recording:
     epochs = _read_epochs(data, counts)
     fixed = [number for number, epoch in enumerate(epochs) if epoch.has_fix]
     if fixed:
-        counts["times before the first fix"] = _placed_count(epochs[: fixed[0]])
+        counts["times before the first fix"] = sum(map(_is_placed, epochs[: fixed[0]]))
         epochs = epochs[fixed[0] :]
-    if not _placed_count(epochs):
+    if not any(map(_is_placed, epochs)):
         raise track_error(
             "empty_file",
             name,
@@ -145,10 +146,6 @@ def read_nmea(data: bytes, name: str) -> Recording:
 
 def _is_placed(epoch: _Epoch) -> bool:
     return any(kind in PLACES for _, kind in epoch.seen)
-
-
-def _placed_count(epochs: list[_Epoch]) -> int:
-    return sum(map(_is_placed, epochs))
 
 
 def _make_recording(
@@ -185,19 +182,18 @@ def _make_recording(
 
 def _read_epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
     epochs: list[_Epoch] = []
-    for sentence in sentences(data, counts):
-        message = sentence.message
+    for row, message, has_not_finite_cell in sentences(data, counts):
         at = getattr(message, "time", "")
         if message.msgID == "VTG" and epochs:  # has no time
             epoch = epochs[-1]
         elif isinstance(at, time):
-            epoch = _epoch_at(epochs, at, message, sentence.row)
+            epoch = _epoch_at(epochs, at, message, row)
         else:
             counts[NO_TIME] += 1
             continue
         if not epoch.take(message):
             counts[OTHER_TALKER] = counts.get(OTHER_TALKER, 0) + 1
-        epoch.has_not_finite_cell |= sentence.has_not_finite_cell
+        epoch.has_not_finite_cell |= has_not_finite_cell
     return epochs
 
 
@@ -272,11 +268,6 @@ def _number(message: Any, name: str) -> float:
     return read if math.isfinite(read) else math.nan
 
 
-def _date(value: Any) -> date | None:
-    """The date that was parsed; None for another value."""
-    return value if isinstance(value, date) else None
-
-
 def _whole_date(message: Any) -> date | None:
     try:
         day = date(int(message.year), int(message.month), int(message.day))
@@ -285,8 +276,7 @@ def _whole_date(message: Any) -> date | None:
     return day if YEARS[0] <= day.year <= YEARS[1] else None
 
 
-READ: Final = ("GGA", "GNS", "GLL", "RMC", "VTG", "GST", "ZDA")
-"""Sentences that are read."""
+_READ: Final = re.compile(rb"[A-Z][A-Z0-9](GGA|GNS|GLL|RMC|VTG|GST|ZDA)")
 SENTENCE: Final = re.compile(rb"\$[A-Z]{2}(GGA|GNS|GLL|RMC|VTG|GST|ZDA),")
 LONGEST: Final = 1_000
 """Maximum bytes of a sentence: NMEA allows 82, receivers write somewhat more."""
@@ -294,74 +284,39 @@ WRONG_CHECKSUM: Final = "sentences with a wrong checksum"
 NO_CHECKSUM: Final = "sentences without a checksum, next to others with one"
 UNREADABLE: Final = "sentences with a cell that cannot be read"
 _PIECE: Final = re.compile(rb"\$([A-Z][A-Z0-9]{2,9}),([\x20-\x23\x25-\x7e]*)")
-_CHECKSUM: Final = re.compile(rb"[0-9A-Fa-f]{2}")
+_CHECKSUM: Final = re.compile(r"[0-9A-Fa-f]{2}")
 _LINE_END: Final = re.compile(rb"\r\n|\r|\n")
 
 
-@dataclass(frozen=True, slots=True)
-class Sentence:
-    """A decoded sentence, its row in the file, and whether a cell was `nan` or `inf`."""
+def sentences(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any, bool]]:
+    """Row in the file, decoded sentence, and whether a cell was `nan` or `inf`; rejected sentences are counted."""
+    from pynmeagps import calc_checksum
 
-    row: int
-    message: Any
-    has_not_finite_cell: bool
-
-
-@dataclass(frozen=True, slots=True)
-class _Piece:
-    """A sentence as written; the checksum is None if missing or incomplete."""
-
-    begin: int
-    address: bytes
-    content: bytes
-    checksum: bytes | None
-
-
-def sentences(data: bytes, counts: dict[str, int]) -> Iterator[Sentence]:
-    """Every sentence that is read, in the order of the file; rejected ones are added to `counts`."""
-    pieces = [_piece_of_match(match) for match in _PIECE.finditer(data)]
-    checked = {piece.address for piece in pieces if piece.checksum is not None}
+    pieces = []
+    for match in _PIECE.finditer(data):
+        content, star, rest = match[0][1:].decode("ascii").partition("*")
+        stated = _CHECKSUM.match(rest) if star else None
+        pieces.append((match, content.rstrip(), stated and stated[0].upper()))
+    checked = {match[1] for match, _, checksum in pieces if checksum}
     line_ends = [match.end() for match in _LINE_END.finditer(data)]
-    for piece in pieces:
-        reason = _rejection(piece, checked)
-        if reason is None and _is_read(piece.address):
-            content, has_not_finite_cell = _finite(piece.content)
-            message = _decode_sentence(content)
+    for match, content, checksum in pieces:
+        reason = None
+        if len(content) > LONGEST:
+            reason = UNREADABLE
+        elif checksum is None:
+            reason = NO_CHECKSUM if match[1] in checked else None
+        elif calc_checksum(content) != checksum:
+            reason = WRONG_CHECKSUM
+        if reason is None and _READ.fullmatch(match[1]):
+            cells = content.split(",")
+            finite = ["" if NOT_FINITE_CELL.fullmatch(cell.strip()) else cell for cell in cells]
+            message = _decode_sentence(",".join(finite))
             if message is not None:
-                yield Sentence(bisect_right(line_ends, piece.begin) + 1, message, has_not_finite_cell)
+                yield bisect_right(line_ends, match.start()) + 1, message, finite != cells
                 continue
             reason = UNREADABLE
         if reason is not None:
             counts[reason] = counts.get(reason, 0) + 1
-
-
-def _piece_of_match(match: re.Match[bytes]) -> _Piece:
-    content, star, rest = match[0][1:].partition(b"*")
-    checksum = _CHECKSUM.match(rest) if star else None
-    return _Piece(match.start(), match[1], content.rstrip(), None if checksum is None else checksum[0])
-
-
-def _is_read(address: bytes) -> bool:
-    return len(address) == 5 and address[2:].decode("ascii") in READ
-
-
-def _rejection(piece: _Piece, checked: set[bytes]) -> str | None:
-    """The reason to leave a sentence out, or None."""
-    from pynmeagps import calc_checksum
-
-    if len(piece.content) > LONGEST:
-        return UNREADABLE
-    if piece.checksum is None:
-        return NO_CHECKSUM if piece.address in checked else None
-    expected: str = calc_checksum(piece.content.decode("ascii"))
-    return None if expected == piece.checksum.decode("ascii").upper() else WRONG_CHECKSUM
-
-
-def _finite(content: bytes) -> tuple[str, bool]:
-    """The content with blank cells for `nan` and `inf`, and whether there were any."""
-    cells = content.decode("ascii").split(",")
-    blanked = ["" if NOT_FINITE_CELL.fullmatch(cell.strip()) else cell for cell in cells]
-    return ",".join(blanked), blanked != cells
 
 
 def _decode_sentence(content: str) -> Any:

@@ -6,12 +6,12 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Annotated, Final
+from typing import Final
 
 from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, current_language, template
-from ...parameters import Allowed, Quantity, own_quantities
+from ...parameters import Quantity
 from ..projection import HIGHEST, GeodeticPoint
 from ..track import Axes, SolutionArray
 
@@ -71,48 +71,26 @@ FASTEST_NUMBER: Final = 1e4
 """Largest speed (m/s), far beyond that of anything on snow."""
 
 
-def _place_quantity(name: str) -> Quantity:
-    return Quantity(name, "in the frame of the file", lowest=-FARTHEST, highest=FARTHEST)
-
-
-def _velocity_quantity(name: str, meaning: str) -> Quantity:
-    return Quantity(name, meaning, lowest=-FASTEST_NUMBER, highest=FASTEST_NUMBER)
-
-
-@dataclass(frozen=True, slots=True)
-class LocalPlace:
-    """Place of a point in local metres of the file."""
-
-    x: Annotated[float, _place_quantity("x_m")]
-    y: Annotated[float, _place_quantity("y_m")]
-    z: Annotated[float, _place_quantity("z_m")]
-
-
-@dataclass(frozen=True, slots=True)
-class GeodeticPlace:
-    """Place of a point on the earth."""
-
-    latitude: Annotated[float, Quantity("latitude_deg", "latitude"), Allowed(-90.0, 90.0)]
-    longitude: Annotated[float, Quantity("longitude_deg", "longitude"), Allowed(-180.0, 180.0)]
-    height: Annotated[float, Quantity("height_m", "height"), Allowed(-HIGHEST, HIGHEST)]
-
-
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """Other quantities of a point that devices record."""
-
-    speed: Annotated[float, _velocity_quantity("speed_m_per_s", "speed")]
-    velocity: Annotated[float, _velocity_quantity("velocity_m_per_s", "part of the velocity")]
-    odometer: Annotated[float, Quantity("odometer_m", "distance so far"), Allowed(-FARTHEST, FARTHEST)]
-    place_sd: Annotated[float, Quantity("place_sd_m", "standard deviation of a place"), Allowed(0.0, FARTHEST)]
-    speed_sd: Annotated[
-        float, Quantity("speed_sd_m_per_s", "standard deviation of the speed"), Allowed(0.0, FASTEST_NUMBER)
-    ]
-
-
-LOCAL: Final = own_quantities(LocalPlace)
-GEODETIC: Final = own_quantities(GeodeticPlace)
-MOTION: Final = {quantity.field: quantity for quantity in own_quantities(Motion)}
+LOCAL: Final = tuple(Quantity(f"{axis}_m", axis, lowest=-FARTHEST, highest=FARTHEST, field=axis) for axis in "xyz")
+GEODETIC: Final = tuple(
+    Quantity(name, field, lowest=-most, highest=most, field=field)
+    for name, field, most in (
+        ("latitude_deg", "latitude", 90.0),
+        ("longitude_deg", "longitude", 180.0),
+        ("height_m", "height", HIGHEST),
+    )
+)
+MOTION: Final = {
+    field: Quantity(f"{field}_{unit}", field, lowest=lowest, highest=highest)
+    for field, unit, lowest, highest in (
+        ("speed", "m_per_s", -FASTEST_NUMBER, FASTEST_NUMBER),
+        ("velocity", "m_per_s", -FASTEST_NUMBER, FASTEST_NUMBER),
+        ("odometer", "m", -FARTHEST, FARTHEST),
+        ("place_sd", "m", 0.0, FARTHEST),
+        ("speed_sd", "m_per_s", 0.0, FASTEST_NUMBER),
+    )
+}
+"""Ranges of the quantities of a point, by the field of `Recording`."""
 
 
 _PLACES: Final = {

@@ -89,27 +89,14 @@ LARGEST: Final = 1e12
 ZONES: Final = {"UTC": UTC, "JST": timezone(timedelta(hours=9))}
 GPS_BEGIN: Final = datetime(1980, 1, 6)
 """Beginning of the weeks that RTKLIB counts; GPS time has no zone."""
-DEVIATIONS: Final = {
-    "geodetic": ("sde", "sdn", "sdu"),
-    "earth_centred": ("sdx", "sdy", "sdz"),
-    "baseline": ("sde", "sdn", "sdu"),
-}
+AXES: Final = {"geodetic": "enu", "earth_centred": "xyz", "baseline": "enu"}
+"""Letters of the axes in the names of columns."""
+PAIRS: Final = {"enu": ("ne", "un", "eu"), "xyz": ("xy", "yz", "zx")}
+"""Pairs of axes in the names of signed roots of covariances: first with second, second with third, third with first."""
 QUALITIES: Final[dict[float, Solution]] = {
     1.0: "fixed", 2.0: "float", 3.0: "code", 4.0: "code", 5.0: "code", 6.0: "float",
 }  # fmt: skip
 """Kind of solution by the column Q: fix, float, SBAS, DGPS, single, PPP (by the phase, with float cycles)."""
-SPEED_DEVIATIONS: Final = {
-    "geodetic": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
-    "earth_centred": (("sdvx", "sdvy", "sdvz"), ("sdvxy", "sdvyz", "sdvzx")),
-    "baseline": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
-}
-"""Columns of the standard deviations of the velocity's components, and of the signed roots of their covariances: first
-with second, second with third, third with first."""
-VELOCITIES: Final = {
-    "geodetic": ("ve", "vn", "vu"),
-    "earth_centred": ("vx", "vy", "vz"),
-    "baseline": ("ve", "vn", "vu"),
-}
 
 
 def read_rtklib(text: str, name: str) -> Recording:
@@ -130,7 +117,8 @@ def read_rtklib(text: str, name: str) -> Recording:
         moments.append(moment)
         table.append(values)
         not_finite.append(has_not_finite_cell)
-    columns = _columns_by_name(np.array(table, dtype=float).reshape(len(rows), len(header.columns)), header)
+    numbers = np.array(table, dtype=float).reshape(len(rows), len(header.columns))
+    columns = dict(zip(header.columns, numbers.T, strict=True))
     place, is_geodetic = _place(columns, header, base)
     velocity, place_sd = _velocity(columns, header, place), _deviations_of_places(columns, header, place)
     quality = columns.get("q")
@@ -208,10 +196,10 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
 
 def _used_columns(kind: str) -> frozenset[str]:
     """Names of the columns that are read; an unreadable cell in another one is only flagged."""
+    axes = AXES[kind]
     covariances = ("sdxy", "sdyz", "sdzx") if kind == "earth_centred" else ()
-    speeds, speed_covariances = SPEED_DEVIATIONS[kind]
-    deviations = (*DEVIATIONS[kind], *covariances, *speeds, *speed_covariances)
-    return frozenset({"q", *PLACES[kind], *VELOCITIES[kind], *deviations})
+    vectors = (f"{prefix}{axis}" for prefix in ("v", "sd", "sdv") for axis in axes)
+    return frozenset({"q", *PLACES[kind], *vectors, *covariances, *(f"sdv{pair}" for pair in PAIRS[axes])})
 
 
 def _degrees(cells: list[str], values: list[float]) -> list[float]:
@@ -258,14 +246,9 @@ def _base(lines: list[str], header: Header) -> GeodeticPoint | None:
     return None
 
 
-def _columns_by_name(table: FloatArray, header: Header) -> dict[str, FloatArray]:
-    return {column: table[:, place] for place, column in enumerate(header.columns)}
-
-
-def _stack_vectors(columns: dict[str, FloatArray], names: tuple[str, str, str]) -> FloatArray | None:
-    if any(name not in columns for name in names):
-        return None
-    return np.column_stack([columns[name] for name in names])
+def _stack_vectors(columns: dict[str, FloatArray], prefix: str, header: Header) -> FloatArray | None:
+    names = [f"{prefix}{axis}" for axis in AXES[header.kind]]
+    return np.column_stack([columns[name] for name in names]) if {*names} <= columns.keys() else None
 
 
 def _place(columns: dict[str, FloatArray], header: Header, base: GeodeticPoint | None) -> tuple[FloatArray, bool]:
@@ -283,14 +266,14 @@ def _place(columns: dict[str, FloatArray], header: Header, base: GeodeticPoint |
 
 
 def _velocity(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
-    velocity = _stack_vectors(columns, VELOCITIES[header.kind])
+    velocity = _stack_vectors(columns, "v", header)
     if velocity is None or header.kind != "earth_centred":
         return velocity
     return np.asarray(np.einsum("nij,nj->ni", east_north_up_axes(place[:, 0], place[:, 1]), velocity))
 
 
 def _deviations_of_places(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
-    deviations = _stack_vectors(columns, DEVIATIONS[header.kind])
+    deviations = _stack_vectors(columns, "sd", header)
     if deviations is None or header.kind != "earth_centred":
         return deviations
     covariance = np.zeros((len(place), 3, 3))
@@ -305,15 +288,14 @@ def _deviations_of_places(columns: dict[str, FloatArray], header: Header, place:
 
 def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | None:
     """Standard deviation (n,) of the component along the velocity; at rest the largest of three; NaN if impossible."""
-    names, roots = SPEED_DEVIATIONS[header.kind]
-    velocity, deviations = _stack_vectors(columns, VELOCITIES[header.kind]), _stack_vectors(columns, names)
+    velocity, deviations = (_stack_vectors(columns, prefix, header) for prefix in ("v", "sdv"))
     if velocity is None or deviations is None:
         return None
     speed = np.linalg.norm(velocity, axis=1)
     along = velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
     variance = np.sum((along * deviations) ** 2, axis=1)
-    for name, one, other in zip(roots, (0, 1, 2), (1, 2, 0), strict=True):
-        root = columns.get(name, np.zeros(len(speed)))
+    for pair, one, other in zip(PAIRS[AXES[header.kind]], (0, 1, 2), (1, 2, 0), strict=True):
+        root = columns.get(f"sdv{pair}", np.zeros(len(speed)))
         variance += 2.0 * along[:, one] * along[:, other] * np.sign(root) * root**2
     deviation = np.where(speed > 0.0, np.sqrt(np.maximum(variance, 0.0)), deviations.max(axis=1))
     return np.where(np.abs(deviation) <= FASTEST_NUMBER, deviation, np.nan)

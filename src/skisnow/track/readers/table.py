@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import itertools
 import math
 import re
@@ -11,7 +10,7 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -43,10 +42,9 @@ def read_table(text: str, name: str) -> Recording:
     """
     table = _Table.of(_below_preamble(split_cells(text, name)), name)
     table.require_columns()
-    table.require_rows()
     is_geodetic = table.is_geodetic
     time, start, note = table.time()
-    first_time = 0.0 if start is not None else float(time[0])
+    first_time = float(time[0]) if start is None and len(time) else 0.0
     place = table.vectors(GEODETIC if is_geodetic else LOCAL)
     sd = GEODETIC_SD if is_geodetic else LOCAL_SD
     return Recording(
@@ -72,12 +70,11 @@ def read_table(text: str, name: str) -> Recording:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Column:
+class _Column(NamedTuple):
     """Place of a column among the cells of a row, and the size of its unit in the unit that is read."""
 
     place: int
-    factor: float = 1.0
+    factor: float
 
 
 @dataclass(eq=False)
@@ -139,10 +136,6 @@ class _Table:
             raise self._missing_error("time" if self.is_geodetic else "time_s")
 
     def _missing_error(self, column: str) -> Exception:
-        near = difflib.get_close_matches(column, self.cells.header, n=1, cutoff=0.6)
-        action = Message("Name the column in the header.")
-        if near:
-            action = joined([action, Message("Did you mean {similar!r}?", similar=near[0])])
         return track_error(
             "missing_column",
             self.name,
@@ -150,17 +143,8 @@ class _Table:
             column=column,
             value=", ".join(self.cells.header),
             allowed=Message("the columns {forms}", forms=_FORMS),
-            action=action,
+            action=Message("Name the column in the header."),
         )
-
-    def require_rows(self) -> None:
-        if not self.cells.rows:
-            raise track_error(
-                "empty_file",
-                self.name,
-                allowed=Message("a row for each point below the header"),
-                action=Message("The file has a header only; was anything recorded?"),
-            )
 
     def column(self, name: str) -> list[str]:
         """Cells of a column that the file has, which then counts as used."""
@@ -205,7 +189,7 @@ class _Table:
         """Seconds, the moment of the first row if the column has dates, and a note on how it was read."""
         name = next(column for column in TIMES if column in self.columns)
         cells = self.column(name)
-        if name == "time_s" or not math.isnan(number(cells[0], self.mark)):
+        if name == "time_s" or not cells or not math.isnan(number(cells[0], self.mark)):
             seconds = self._seconds(name, cells)
             return (seconds, None, None) if name == "time_s" else convert_serial_dates(seconds)
         moments = [moment(cell) for cell in cells]

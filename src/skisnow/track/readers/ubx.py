@@ -9,6 +9,7 @@ of the variance (modelling assumption: u-blox's manual only calls it an estimate
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -25,7 +26,7 @@ from .recording import Recording, track_error
 SYNC: Final = b"\xb5\x62"
 LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
 """Lengths in bytes of NAV-PVT (84: u-blox 7, 92: later), NAV-HPPOSLLH and NAV-COV; a request has the length 0."""
-_HEAD, _CHECKSUM = 6, 2
+_BEGIN: Final = re.compile(SYNC + rb"(\x01[\x07\x14\x36])")
 _DAMAGED: Final = "messages with a wrong checksum or cut short"
 _NO_TIME: Final = "messages without a valid time"
 _COUNTS: Final = (_DAMAGED, _NO_TIME)
@@ -113,38 +114,21 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
 
 def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
     """Each message that is read, with its offset; damaged frames are added to `counts`."""
-    from pyubx2 import VALNONE, UBXReader
+    from pyubx2 import VALNONE, UBXReader, calc_checksum
 
-    sums = _Checksums(data)
-    at = data.find(SYNC)
-    while at >= 0:
-        length = int.from_bytes(data[at + 4 : at + _HEAD], "little")
-        end = at + _HEAD + length + _CHECKSUM
-        if end > len(data) or sums.between(at + 2, end - _CHECKSUM) != data[end - _CHECKSUM : end]:
+    end = 0
+    for match in _BEGIN.finditer(data):
+        begin = match.start()
+        length = int.from_bytes(data[begin + 4 : begin + 6], "little")
+        frame = data[begin : begin + 8 + length]
+        if begin < end or not length:  # within a message; a request
+            continue
+        is_whole = length in LENGTHS[match[1]] and len(frame) == 8 + length
+        if is_whole and calc_checksum(frame[2:-2]) == frame[-2:]:
+            end = begin + len(frame)
+            yield begin, UBXReader.parse(frame, validate=VALNONE)
+        else:
             counts[_DAMAGED] += 1
-            end = at + len(SYNC)
-        elif length in LENGTHS.get(data[at + 2 : at + 4], ()):
-            yield at, UBXReader.parse(data[at:end], validate=VALNONE)
-        at = data.find(SYNC, end)
-
-
-class _Checksums:
-    """Checksums of any slice of a file in constant time, from running sums, so that many sync bytes stay cheap.
-
-    u-blox's sums of the bytes dᵢ from b to e are A = Σ dᵢ and B = Σ (e - i) dᵢ, modulo 256.
-    """
-
-    def __init__(self, data: bytes) -> None:
-        values = np.frombuffer(data, np.uint8)
-        at = np.arange(len(data)).astype(np.uint8)
-        self._sum = b"\0" + np.cumsum(values, dtype=np.uint8).tobytes()
-        self._time_of_message = b"\0" + np.cumsum(at * values, dtype=np.uint8).tobytes()
-
-    def between(self, begin: int, end: int) -> bytes:
-        """The two bytes of the checksum over ``data[begin:end]``."""
-        first = self._sum[end] - self._sum[begin]
-        second = end * first - (self._time_of_message[end] - self._time_of_message[begin])
-        return bytes([first % 256, second % 256])
 
 
 def _time_of_message(message: Any) -> datetime | None:
