@@ -50,11 +50,14 @@ def test_boots_rest_before_and_after_their_table() -> None:
         ),
         ({"place": np.full((4, 2, 3), math.nan)}, coded("not_a_number", name="place")),
         ({"at": np.array([0.0, 1.0, 2.0, math.inf])}, coded("not_a_number", name="at")),
-        ({"at": np.array([0.0, 1.0, 1.0, 2.0])}, coded("not_rising", over="time", row=3, at=1.0, before=1.0)),
-        ({"at": np.array([0.0, 5e-324, 1.0, 2.0])}, coded("out_of_range", over="time", row=2, at=5e-324, before=0.0)),
+        ({"at": np.array([0.0, 1.0, 1.0, 2.0])}, coded("not_rising", over="time", row=3, after=1.0, before=1.0)),
+        (
+            {"at": np.array([0.0, 5e-324, 1.0, 2.0])},
+            coded("out_of_range", over="time", row=2, after=5e-324, before=0.0),
+        ),
         (
             {"at": np.array([0.0, 1.0, 1.0 + 1e-7, 2.0])},
-            coded("out_of_range", over="time", row=3, at=1.0000001, before=1.0),
+            coded("out_of_range", over="time", row=3, after=1.0000001, before=1.0),
         ),
         ({"at": np.array([0.0, 1.0, 2.0, 1e308])}, coded("out_of_range", name="at")),
         ({"place": np.full((4, 2, 3), -1e308)}, coded("out_of_range", name="place")),

@@ -136,8 +136,8 @@ def test_with_and_without_section_and_unit(word: str, key: str) -> None:
         ("x_ms", coded("unknown_name", word="x_ms")),
         ("MASS", "unknown_name"),
         ("speeds", "unknown_name"),
-        ("dragarea", coded("unknown_name", allowed="Near are drag.drag_area_m2")),
-        ("sf", coded("unknown_name", allowed="Near are snow.S_f_N_per_mm2, skier.shift_m")),
+        ("dragarea", coded("unknown_name", similar="drag_area")),
+        ("sf", coded("unknown_name", similar="S_f")),
         ("step", coded("not_free", key="solver.step_ms")),
         ("inertia", coded("not_free", key="sledge.inertia_kg_m2")),
         ("ski.name", coded("not_free", key="ski.name")),
@@ -153,7 +153,7 @@ def test_what_is_no_key_to_look_for(word: str, told: str | Coded) -> None:
 def test_where_nothing_is_near_all_are_reported() -> None:
     with pytest.raises(ParameterError) as refused:
         free_key("quark")
-    told = str(refused.value).partition("There are ")[2].split(", ")
+    told = str(refused.value).partition("Allowed: ")[2].removesuffix(".").split(", ")
     assert [free_key(word) for word in told] == list(FREE_KEYS)
     assert told == [short_name(key) for key in FREE_KEYS]
 

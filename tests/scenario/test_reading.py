@@ -353,7 +353,7 @@ def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
         ("[identify]\nduration_s = 5", coded("not_free", key="run.duration_s")),
         ("[identify]\nmass_kg = 90", coded("wrong_kind", section="sledge")),
         ('[identify."mu_9"]\nlower = 0', "unknown_name"),
-        ("[identify]\nclok = 'free'", coded("unknown_name", similar="clock")),
+        ("[identify]\nclok = 'free'", coded("unknown_name", word="clok")),
         ("[identify]\nclock = 'fre'", "out_of_range"),
         ("[identify.mu_0]\nlowr = 0", coded("unknown_name", similar="lower")),
         ("[identify.mu_0]\nlower = nan", coded("out_of_range", name="lower", value="nan")),

@@ -147,7 +147,7 @@ def test_what_is_wrong_in_a_file_is_reported_with_row_and_column(tmp_path: Path,
 def test_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with raises(ParameterError, "cannot_read"):
         read_profile(tmp_path / "nowhere.csv")
-    (tmp_path / "image.csv").write_bytes(b"\xff\xfe\x00\x81")
+    (tmp_path / "image.csv").write_bytes(b"\x89PNG\x00\x81")
     with raises(ParameterError, "not_text"):
         read_profile(tmp_path / "image.csv")
 

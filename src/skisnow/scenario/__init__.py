@@ -15,27 +15,7 @@ from .snow_map import SnowMap, read_snow_map
 from .terrain import Slope, Terrain, read_terrain
 
 __all__ = [
-    "Air",
-    "Boots",
-    "Contact",
-    "Plane",
-    "Profile",
-    "RigidSledge",
-    "Scenario",
-    "ScenarioFile",
-    "Skier",
-    "Slope",
-    "SnowMap",
-    "Solver",
-    "Start",
-    "Stop",
-    "Terrain",
-    "load_scenario",
-    "read_profile",
-    "read_snow_map",
-    "read_terrain",
-    "scenario_file",
-    "scenario_names",
-    "scenario_text",
-    "scenario_values",
-]
+    "Air", "Boots", "Contact", "Plane", "Profile", "RigidSledge", "Scenario", "ScenarioFile", "Skier", "Slope",
+    "SnowMap", "Solver", "Start", "Stop", "Terrain", "load_scenario", "read_profile", "read_snow_map", "read_terrain",
+    "scenario_file", "scenario_names", "scenario_text", "scenario_values",
+]  # fmt: skip

@@ -6,7 +6,7 @@ import csv
 import io
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
@@ -120,7 +120,7 @@ class Boots(Shown):
     def _require_sound(self) -> None:
         self._require_shapes()
         self._require_numbers()
-        self._require_steps()
+        _require_rising(self.at, lambda row: Message("boots: {over} of row {row}", over=self.over, row=row + 1))
         self._require_rotations()
         require_choice("boots: frame", self.frame, get_args(Frame))
         require_choice("boots: over", self.over, get_args(Over))
@@ -153,20 +153,6 @@ class Boots(Shown):
                 raise ParameterError("boots: {name} has a number beyond ±{largest:g}. Correct it.").tag(
                     "out_of_range", name=name, largest=LARGEST
                 )
-
-    def _require_steps(self) -> None:
-        steps = np.diff(self.at)
-        row = int(np.argmin(steps > 0.0 if (steps <= 0.0).any() else steps >= SHORTEST_STEP))
-        step = {"over": self.over, "row": row + 2, "at": self.at[row + 1], "before": self.at[row]}
-        if steps[row] <= 0.0:
-            raise ParameterError("boots: {over} of row {row} is {at:g} after {before:g}; it must rise").tag(
-                "not_rising", **step
-            )
-        if steps[row] < SHORTEST_STEP:
-            raise ParameterError(
-                "boots: {over} of row {row} is {at:g} after {before:g}. Allowed: steps of {shortest_step:g} or more. "
-                "Correct the number, or omit one of the rows."
-            ).tag("out_of_range", shortest_step=SHORTEST_STEP, **step)
 
     def _require_rotations(self) -> None:
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
@@ -218,19 +204,26 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     stripped = [name.strip() for name in names]
     head = column_names(stripped, (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in _OF_A_BOOT)))
     _require_columns(path, head)
-    table = {name: _read_column(path, rows, head, place) for place, name in enumerate(head) if _is_input_column(name)}
+    table = {
+        name: _read_column(path, rows, head, place) for place, name in enumerate(head) if not name.endswith(_RESULTS)
+    }
     clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
         raise ParameterError("{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more").tag(
             "out_of_range", path=path, n_rows=len(rows), fewest_poses=FEWEST_POSES
         )
-    _require_rising(path, clock, rows, table[clock])
+    at = table[clock]
+    _require_rising(
+        at, lambda row: Message("{path}, row {line}, column {clock}", path=path, line=rows[row][0], clock=clock)
+    )
     try:
-        place, axes = (
-            _boots_on_slope(table) if "left_x_m" in head else _boots_on_sledge(table, edge_angle, stance_width)
-        )
+        if "left_x_m" in head:
+            places = [np.stack([table[f"{side}_{name}"] for name in OF_SLOPE], axis=-1) for side in SIDES]
+            place, axes = np.stack(places, axis=1), _axes_of_table(table, dict.fromkeys(ANGLES, 0.0))
+        else:
+            place, axes = _boots_on_sledge(table, edge_angle, stance_width)
         return Boots(
-            table[clock],
+            at,
             place,
             axes,
             frame="slope" if "left_x_m" in head else "sledge",
@@ -290,21 +283,12 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
     return rows, head_of_motion(lines[: ends[0]])
 
 
-def _is_input_column(name: str) -> bool:
-    """True for columns that `read_boots` reads: forces and moments of a run are results."""
-    return not name.endswith(_RESULTS)
-
-
-def _known_columns(head: list[str]) -> tuple[str, ...]:
-    """Columns of a table in the frame of the slope or of the sledge."""
-    places = OF_SLOPE if "left_x_m" in head else OF_SLEDGE
-    return (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
-
-
 def _require_columns(path: Path, head: list[str]) -> None:
-    motion_columns, counts = _known_columns(head), Counter(head)
+    places = OF_SLOPE if "left_x_m" in head else OF_SLEDGE
+    motion_columns = (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
+    counts = Counter(head)
     for name in head:
-        if _is_input_column(name) and name not in motion_columns:
+        if not name.endswith(_RESULTS) and name not in motion_columns:
             raise ParameterError("{path}: unknown column {name}. {allowed}").tag(
                 "missing", path=path, name=name, allowed=suggest_and_list(name, motion_columns)
             )
@@ -317,7 +301,7 @@ def _require_columns(path: Path, head: list[str]) -> None:
         raise ParameterError("{path}: it needs one of the columns time_s (time in .mot) and distance_m").tag(
             "missing", path=path
         )
-    if not any(_is_input_column(name) and name not in clocks for name in head):
+    if not any(name in motion_columns and name not in clocks for name in head):
         raise ParameterError("{path}: no column is one of a boot. There are {known}").tag(
             "missing", path=path, known=list(motion_columns[3:])
         )
@@ -329,26 +313,21 @@ def _require_columns(path: Path, head: list[str]) -> None:
             )
 
 
-def _require_rising(path: Path, clock: str, rows: list[Row], at: FloatArray) -> None:
-    for (line, _), before, after in zip(rows[1:], at[:-1], at[1:], strict=True):
-        if not after > before:
+def _require_rising(at: FloatArray, place: Callable[[int], Message]) -> None:
+    """Reject rows that do not rise by enough for a finite spline; `place` names a row, 0 or more, in the error."""
+    steps = np.diff(at)
+    if not np.all(steps >= SHORTEST_STEP):
+        row = int(np.argmin(steps > 0.0 if (steps <= 0.0).any() else steps >= SHORTEST_STEP))
+        fields = {"place": place(row + 1), "after": at[row + 1], "before": at[row]}
+        if steps[row] <= 0.0:
             raise ParameterError(
-                "{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the rows in "
-                "order, or leave one of two with the same pose out"
-            ).tag("not_rising", path=path, line=line, clock=clock, after=after, before=before)
-        if after - before < SHORTEST_STEP:
-            raise ParameterError(
-                "{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of {shortest_step:g} "
-                "or more. Correct the number, or omit one of the rows."
-            ).tag(
-                "out_of_range",
-                path=path,
-                line=line,
-                clock=clock,
-                after=after,
-                before=before,
-                shortest_step=SHORTEST_STEP,
-            )
+                "{place}: {after:g} after {before:g}; it must rise. Put the rows in order, or leave one of two with "
+                "the same pose out"
+            ).tag("not_rising", **fields)
+        raise ParameterError(
+            "{place}: {after:g} after {before:g}. Allowed: steps of {shortest_step:g} or more. Correct the number, or "
+            "omit one of the rows."
+        ).tag("out_of_range", shortest_step=SHORTEST_STEP, **fields)
 
 
 def _read_column(path: Path, rows: list[Row], head: list[str], place: int) -> FloatArray:
@@ -389,12 +368,6 @@ def _axes_of_table(table: Mapping[str, Any], missing: Mapping[str, float]) -> Fl
     n = len(next(iter(table.values())))
     angles = [[table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES]
     return np.array([[axes_of(*(float(row[i]) for row in of_ski)) for of_ski in angles] for i in range(n)])
-
-
-def _boots_on_slope(table: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
-    """Places (n, 2, 3) (m) and axes (n, 2, 3, 3) of both boots on the slope."""
-    place = np.stack([np.stack([table[f"{side}_{name}"] for name in OF_SLOPE], axis=-1) for side in SIDES], axis=1)
-    return place, _axes_of_table(table, dict.fromkeys(ANGLES, 0.0))
 
 
 def _boots_on_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float) -> tuple[FloatArray, FloatArray]:

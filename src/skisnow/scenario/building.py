@@ -24,7 +24,7 @@ from .keys import SCENARIO_KEYS, full_name
 from .resolution import CONDITIONS, DISPLACEMENT, H_V, S_F, UNLOADING, ContradictionError, Resolution
 from .scenario import Scenario, course_on_slope
 from .slope import Plane, read_profile
-from .snow_map import SnowMap, read_snow_layers
+from .snow_map import read_snow_layers
 from .terrain import Slope, read_terrain
 
 LAW_FILE = "friction.law_file"
@@ -134,9 +134,7 @@ def _contact(resolution: Resolution) -> Contact:
         fields = {"name": UNLOADING, "meaning": SCENARIO_KEYS[UNLOADING].meaning}
         problem = (
             Message(
-                "{name} is missing: {meaning}; {source} has no measured value. Give it",
-                **fields,
-                source=snow.source,
+                "{name} is missing: {meaning}; {source} has no measured value. Give it", **fields, source=snow.source
             )
             if resolution.snow
             else Message("{name} is missing: {meaning}. Give it", **fields)
@@ -206,12 +204,17 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     if "snow" in parts:
         parts["contact"] = _contact_on_snow(parts.get("contact", scenario.contact), parts.pop("snow"))
     if "snow_map" in parts:
-        parts["contact"] = _contact_on_map(parts.get("contact", scenario.contact), parts.pop("snow_map"))
+        contact, snow_map = parts.get("contact", scenario.contact), parts.pop("snow_map")
+        mapped = contact.snow if snow_map is None else snow_map.means_of(contact.snow)
+        parts["contact"] = replace(contact, snow=mapped, snow_map=snow_map)
     scenario = replace(scenario, **parts)
     _require_changeable(scenario, numbers)
     _require_effect(scenario, numbers)
     measured = {"unloading": UNLOADING in numbers, "displacement": DISPLACEMENT in numbers}
-    snow = with_numbers(scenario.contact.snow.without_measured(**measured), _strengths_in_range(numbers))
+    strengths: dict[str, Any] = {
+        name: SCENARIO_KEYS[name].in_range(numbers[name]) for name in (H_V, S_F) if name in numbers
+    }
+    snow = with_numbers(scenario.contact.snow.without_measured(**measured), strengths)
     if snow is not scenario.contact.snow:
         scenario = replace(scenario, contact=replace(scenario.contact, snow=snow))
     return replace_declared(scenario, numbers)
@@ -241,10 +244,6 @@ def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
             )
 
 
-def _strengths_in_range(numbers: Mapping[str, object]) -> dict[str, Any]:
-    return {name: SCENARIO_KEYS[name].in_range(numbers[name]) for name in (H_V, S_F) if name in numbers}
-
-
 def _contact_on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     new = published_snow(snow) if isinstance(snow, str) else snow
     if not isinstance(new, SnowProperties):
@@ -255,11 +254,6 @@ def _contact_on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     ratio = contact.unloading_ratio if new.unloading_ratio is None else new.unloading_ratio
     displacement = contact.shear_displacement if new.shear_displacement is None else new.shear_displacement
     return replace(contact, snow=new, snow_map=None, unloading_ratio=ratio, shear_displacement=displacement)
-
-
-def _contact_on_map(contact: Contact, snow_map: SnowMap | None) -> Contact:
-    snow = contact.snow if snow_map is None else snow_map.means_of(contact.snow)
-    return replace(contact, snow=snow, snow_map=snow_map)
 
 
 def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> None:

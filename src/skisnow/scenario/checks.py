@@ -4,42 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from ..ski import Ski
-from .run_settings import Start
-from .skier import Skier
-from .sledge import RigidSledge, Shear
-from .terrain import Slope, extent_of
+from .terrain import extent_of
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
 
 
-def require_sound(
-    slope: Slope,
-    sledge: RigidSledge,
-    ski: Ski,
-    *,
-    clamp_length: float,
-    start: Start,
-    shear: Shear,
-    friction: float,
-) -> None:
+def require_sound(scenario: Scenario) -> None:
     """Reject parts of a scenario that contradict each other."""
-    for complaint in _contradictions(slope, sledge, ski, clamp_length, start, shear, friction):
+    for complaint in _contradictions(scenario):
         raise ParameterError(complaint).tag("contradiction")
-
-
-def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
-    """Raise an error for a skier that contradicts the rest of the scenario."""
+    skier, sledge = scenario.skier, scenario.sledge
     if skier is None:
         return
     if sledge.edge_angle != 0.0:
         raise ParameterError("sledge.edge_angle_deg is {degrees:g}; the skier sets the edges itself: write 0").tag(
             "contradiction", degrees=math.degrees(sledge.edge_angle)
         )
-    if has_boots:
+    if scenario.boots is not None:
         raise ParameterError("boots.file and [skier] both move the boots; remove one of them").tag("contradiction")
-    if skier.steers == "gates" and not has_course:
+    if skier.steers == "gates" and scenario.course is None:
         raise ParameterError('skier.steers is "gates" without a course; give course.name or course.file').tag(
             "contradiction"
         )
@@ -50,15 +38,8 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
         ).tag("out_of_range", longest_leg=skier.longest_leg, centre_of_mass=sledge.centre_of_mass[1])
 
 
-def _contradictions(
-    slope: Slope,
-    sledge: RigidSledge,
-    ski: Ski,
-    clamp_length: float,
-    start: Start,
-    shear: Shear,
-    friction: float,
-) -> Iterator[Message]:
+def _contradictions(scenario: Scenario) -> Iterator[Message]:
+    sledge, ski, shear, start = scenario.sledge, scenario.ski, scenario.shear, scenario.start
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
         yield Message(
@@ -70,15 +51,16 @@ def _contradictions(
             width=width,
         )
     most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
-    if clamp_length >= most:
+    if scenario.clamp_length >= most:
         yield Message(
             "the clamp length is {clamp_length:g} m; the ski {name} allows less than {most:.3g} m. Write 0 for a "
             "binding "
             "that bends with the ski",
-            clamp_length=clamp_length,
+            clamp_length=scenario.clamp_length,
             name=ski.name,
             most=most,
         )
+    friction = scenario.contact.friction_at(start.speed)
     if friction < 0.0:
         yield Message(
             "the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski",
@@ -92,7 +74,7 @@ def _contradictions(
             edge_angle=math.degrees(abs(sledge.edge_angle)),
             least=least,
         )
-    for name, place, (first, last) in zip("xy", (start.x, start.y), extent_of(slope), strict=True):
+    for name, place, (first, last) in zip("xy", (start.x, start.y), extent_of(scenario.slope), strict=True):
         if not first <= place <= last:
             yield Message(
                 "the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there",

@@ -34,22 +34,6 @@ ELASTIC: Final = 1.0
 """k_u/H_V of snow that springs back."""
 
 
-def _penetration_kind(unloading_ratio: float) -> Penetration:
-    return "elastic" if unloading_ratio == ELASTIC else "hypoplastic"
-
-
-def _map_source(snow_map: SnowMap | None) -> str | None:
-    return None if snow_map is None else snow_map.source
-
-
-def _law_path(law: FrictionFile | None) -> str | None:
-    return None if law is None else law.path
-
-
-def _layers_source(layers: SnowLayers | None) -> str | None:
-    return None if layers is None else layers.source
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Contact:
     """Contact of skis and snow.
@@ -88,7 +72,7 @@ class Contact:
             choices=get_args(Penetration),
             default="hypoplastic",
             origin="snow keeps its tracks",
-            word_of=_penetration_kind,
+            word_of=lambda ratio: "elastic" if ratio == ELASTIC else "hypoplastic",
         ),
     ]
     compaction_resistance: Annotated[
@@ -139,7 +123,7 @@ class Contact:
         Word(
             "snow.layers_file",
             "CSV file of layers: depth_mm of each top, hardness_share of H_V or force_N of a SnowMicroPen",
-            word_of=_layers_source,
+            word_of=lambda layers: layers and layers.source,
             names_file=True,
             label=Message("file of the snow over the depth"),
         ),
@@ -211,7 +195,7 @@ class Contact:
         Word(
             "friction.law_file",
             "TOML file of μ over speed, temperature and liquid water, instead of μ_0 and μ_1",
-            word_of=_law_path,
+            word_of=lambda law: law and law.path,
             names_file=True,
             label=Message("file of the friction over the snow's state"),
         ),
@@ -234,7 +218,7 @@ class Contact:
             "snow.map_file",
             "CSV file of H_V, S_f and friction over the place: x_m, y_m or not, H_V_N_per_mm3 and S_f_N_per_mm2 "
             "instead of these, mu_share times μ",
-            word_of=_map_source,
+            word_of=lambda snow_map: snow_map and snow_map.source,
             names_file=True,
             label=Message("file of the snow over the place"),
         ),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final
@@ -11,7 +10,6 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message, joined
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..parameters import Allowed, Quantity, checked_table, quantities, suggest_and_list
 from ..snow import SnowProperties
@@ -78,7 +76,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         if word in NO_KEYS:
             continue
         own, at, run = word.partition("@")
-        key = _checked_key(own, f'[identify."{word}"]', _similar_word_hint(word)) + at + run
+        key = _checked_key(own, f'[identify."{word}"]') + at + run
         if not isinstance(table, dict):
             raise ParameterError(
                 'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
@@ -88,17 +86,11 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     return parameters
 
 
-def _checked_key(word: str, place: str, meant: Message | None = None) -> str:
+def _checked_key(word: str, place: str) -> str:
     try:
         return free_key(word)
     except ParameterError as error:
-        problem = joined([error.message, meant]) if meant else error.message
-        raise ParameterError("{place}: {problem}").tag(error.code, place=place, problem=problem) from None
-
-
-def _similar_word_hint(word: str) -> Message | None:
-    near = difflib.get_close_matches(word.lower(), NO_KEYS, n=1, cutoff=0.6)
-    return Message("Or did you mean {similar}?", similar=near[0]) if near else None
+        raise error.at(place) from None
 
 
 def _read_table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:

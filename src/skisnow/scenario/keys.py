@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
@@ -178,11 +177,11 @@ def free_key(word: str) -> str:
     if usable:
         return usable[0]
     if meant:
-        raise ParameterError("{key} cannot be identified: {reason}. Allowed: {keys}").tag(
-            "not_free", key=meant[0], reason=_reason_fixed(meant[0]), keys=list(FREE_KEYS)
+        raise ParameterError("{key} cannot be identified: it is not a number of the run. Allowed: {keys}").tag(
+            "not_free", key=meant[0], keys=list(FREE_KEYS)
         )
     raise ParameterError("{word!r} is not a key of a scenario. {allowed}").tag(
-        "unknown_name", word=word, allowed=_similar_keys(word)
+        "unknown_name", word=word, allowed=suggest_and_list(word, map(short_name, FREE_KEYS))
     )
 
 
@@ -212,28 +211,3 @@ def _key_of_run(word: str) -> str:
             "missing", word=word, own=own.strip(), each=EACH
         )
     return free_key(own) + at + run.strip()
-
-
-def _reason_fixed(key: str) -> Message:
-    if key.startswith(_HOW_IT_IS_COMPUTED):
-        return Message("it is a setting of the computation, not of the run")
-    return _NOT_ONE_NUMBER[SCENARIO_KEYS[key].kind]
-
-
-_NOT_ONE_NUMBER: Final = {
-    "text": Message("it is a text, not a number"),
-    "switch": Message("it is a switch, not a number"),
-    "number": Message("it is a number that cannot vary"),
-    "whole number": Message("it is a whole number, not a number"),
-    "numbers": Message("it is a list of numbers, not one number"),
-    "three numbers": Message("it is a whole table, not one number"),
-}
-
-
-def _similar_keys(word: str) -> Message:
-    small = {form.lower(): form for key in FREE_KEYS for form in (_spellings(key)[3], _spellings(key)[1], key)}
-    like = difflib.get_close_matches(word.lower(), small, n=4, cutoff=0.5)
-    keys = dict.fromkeys(_KEYS_BY_WORD[small[spelling]][0] for spelling in like)
-    if keys:
-        return Message("Near are {keys}", keys=list(keys)[:3])
-    return Message("There are {keys}", keys=[short_name(key) for key in FREE_KEYS])

@@ -32,12 +32,15 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
         raise ParameterError("{path} cannot be read: the file does not exist. Check the path.").tag(
             "cannot_read", path=path
         )
-    rasterio = _rasterio(path)
+    grid = Message("Or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid.")
+    rasterio: Any = import_extra(
+        "rasterio", extra="geotiff", what=Message("The GeoTIFF {path}", path=path), instead=grid
+    )
     try:
         with warnings.catch_warnings(action="ignore"), rasterio.open(path) as source:  # without a place: rejected below
             require_size(path, source.width, source.height)
             _require_one_band(path, source)
-            heights = _heights(path, source)
+            heights = _heights(source)
             transform, crs = source.transform, source.crs
             system = None if crs is None else map_system(crs.to_wkt())
             unit = _height_unit(path, source.units[0], system)
@@ -58,12 +61,6 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     return placed_heights(raster, column=column)
 
 
-def _rasterio(path: str | Path) -> Any:
-    """The module rasterio; without it the error names the file that needs it."""
-    grid = Message("Or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid.")
-    return import_extra("rasterio", extra="geotiff", what=Message("The GeoTIFF {path}", path=path), instead=grid)
-
-
 def _require_one_band(path: str | Path, source: Any) -> None:
     """Reject pictures and stacks; a band that only masks the first (alpha) may be there."""
     colours = [colour.name for colour in source.colorinterp]
@@ -75,18 +72,10 @@ def _require_one_band(path: str | Path, source: Any) -> None:
         ).tag("out_of_range", path=path, n_colours=len(colours), colours=list(colours))
 
 
-def _heights(path: str | Path, source: Any) -> FloatArray:
+def _heights(source: Any) -> FloatArray:
     """The first band in its unit, NaN where it is masked."""
     band = source.read(1, masked=True)
-    if np.iscomplexobj(band):
-        raise ParameterError("{path}: The first band has complex numbers. Allowed: heights. Export them again.").tag(
-            "out_of_range", path=path
-        )
     scale, offset = float(source.scales[0]), float(source.offsets[0])
-    if not (np.isfinite([scale, offset]).all() and scale != 0.0):
-        raise ParameterError(
-            "{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers."
-        ).tag("not_a_number", path=path, scale=scale, offset=offset)
     with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
         return np.asarray(np.ma.filled(band.astype(float), np.nan) * scale + offset)
 
@@ -178,11 +167,6 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
     at = 0
     while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:
         word = entry[1].lower()
-        if word in header:
-            line = text.count("\n", 0, entry.start(1)) + 1
-            raise ParameterError("{path}, line {line}: {key} is there twice. Remove one of them.").tag(
-                "repeated", path=path, line=line, key=entry[1]
-            )
         try:
             header[word] = float(entry[2])
         except ValueError:
@@ -196,12 +180,9 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
 
 def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
     """Width of the cells in x (dx) or y (dy)."""
-    sizes = {header[name] for name in (word, "cellsize") if name in header}
-    if not sizes:
+    size = header.get(word, header.get("cellsize"))
+    if size is None:
         _refuse(path, f"The header has no cellsize, and no {word}. Is it an ESRI ASCII grid? Export it again")
-    if len(sizes) > 1:
-        _refuse(path, f"cellsize is {header['cellsize']:g}, but {word} is {header[word]:g}. Remove one of them")
-    (size,) = sizes
     if not size > 0.0:
         _refuse(path, f"{word if word in header else 'cellsize'} is {size:g}. Allowed: above 0, in m")
     return size
@@ -209,15 +190,10 @@ def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
 
 def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: float) -> float:
     """The middle of the first cell."""
-    corner, middle = (header.get(f"{axis}ll{word}") for word in ("corner", "center"))
-    if corner is None and middle is None:
-        _refuse(path, f"The header has no {axis}llcorner and no {axis}llcenter. Add the one that the grid begins with")
-    corner_place = middle if middle is not None else (corner or 0.0) + size / 2.0
-    if corner is not None and abs(corner + size / 2.0 - corner_place) > ROUNDED * size:
-        _refuse(path, f"{axis}llcorner is {corner:.10g}, but {axis}llcenter is {middle:.10g}. Remove one of them")
-    if not math.isfinite(corner_place):
-        _refuse(path, f"{axis} of the lower left is {corner_place}. Allowed: a finite number in m")
-    return corner_place
+    middle = header.get(f"{axis}llcenter", header.get(f"{axis}llcorner", math.nan) + size / 2.0)
+    if not math.isfinite(middle):
+        _refuse(path, f"The header has no finite {axis}llcorner and no {axis}llcenter. Add the one in m")
+    return middle
 
 
 def _read_cells(path: str | Path, text: str, first: int, counts: tuple[int, int], no_data: float | None) -> FloatArray:
@@ -226,15 +202,18 @@ def _read_cells(path: str | Path, text: str, first: int, counts: tuple[int, int]
     if len(text) - first < 2 * cells - 1:  # before memory is allocated
         _refuse_number(path, len(text[first:].split()), counts)
     values = np.empty(cells)
-    count, line = 0, text.count("\n", 0, first) + 1
-    for line, words in enumerate((part.split() for part in text[first:].split("\n")), start=line):  # noqa: B020
+    count = 0
+    for line, words in enumerate(map(str.split, text[first:].split("\n")), start=text.count("\n", 0, first) + 1):
         if count + len(words) > cells:
             _refuse_number(path, len(text[first:].split()), counts)
-        try:
-            values[count : count + len(words)] = [float(word) for word in words]
-        except ValueError:
-            _refuse_word(path, line, words)
-        count += len(words)
+        for column, word in enumerate(words, start=1):
+            try:
+                values[count] = float(word)
+            except ValueError:
+                raise ParameterError(
+                    "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point."
+                ).tag("not_a_number", path=path, line=line, column=column, word=word) from None
+            count += 1
     if count < cells:
         _refuse_number(path, count, counts)
     if no_data is not None:
@@ -248,17 +227,6 @@ def _refuse_number(path: str | Path, count: int, counts: tuple[int, int]) -> NoR
         f"The file has {count} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
         "Export it again",
     )
-
-
-def _refuse_word(path: str | Path, line: int, words: list[str]) -> NoReturn:
-    for column, word in enumerate(words, start=1):
-        try:
-            float(word)
-        except ValueError:
-            raise ParameterError(
-                "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point."
-            ).tag("not_a_number", path=path, line=line, column=column, word=word) from None
-    raise AssertionError(words)
 
 
 def _where(text: str, first: int, cell: int) -> str:

@@ -245,9 +245,7 @@ def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
         raise ContradictionError(
             (first, second),
             Message(
-                '{name} is {ratio:g}, but snow.penetration = "elastic" means 1. Remove one',
-                name=UNLOADING,
-                ratio=ratio,
+                '{name} is {ratio:g}, but snow.penetration = "elastic" means 1. Remove one', name=UNLOADING, ratio=ratio
             ),
         )
     raise _contradiction(first, second, quantity)

@@ -16,7 +16,7 @@ from ..ski import Ski, ski_names
 from ..ski.beam import CLAMP_LENGTH
 from ..track.course import Course, on_slope
 from .boots import Boots
-from .checks import require_skier, require_sound
+from .checks import require_sound
 from .contact import Contact
 from .run_settings import Solver, Start, Stop
 from .skier import Skier
@@ -25,27 +25,9 @@ from .slope import Plane, Profile
 from .terrain import Slope, Terrain
 
 
-def _slope_kind(slope: Slope) -> str:
-    if isinstance(slope, Plane):
-        return "plane"
-    return "profile" if isinstance(slope, Profile) else "grid"
-
-
 def course_on_slope(course: Course, slope: Slope) -> Course:
     """The course in the slope's x and y."""
     return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
-
-
-def _catalogue_ski_name(ski: Ski) -> str | None:
-    return ski.name if ski.name in ski_names() else None
-
-
-def _ski_file(ski: Ski) -> str | None:
-    return None if ski.name in ski_names() else ski.name
-
-
-def _boots_file(boots: Boots | None) -> str | None:
-    return None if boots is None else boots.source
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -90,7 +72,7 @@ class Scenario(Shown):
             choices=("plane", "profile", "grid"),
             default="plane",
             origin="choice: the simpler one",
-            word_of=_slope_kind,
+            word_of=lambda slope: {Plane: "plane", Profile: "profile"}.get(type(slope), "grid"),
         ),
     ]
     contact: Contact
@@ -98,12 +80,17 @@ class Scenario(Shown):
     sledge: RigidSledge
     ski: Annotated[
         Ski,
-        Word("ski.name", "a ski of the catalogue", label=Message("ski"), word_of=_catalogue_ski_name),
+        Word(
+            "ski.name",
+            "a ski of the catalogue",
+            label=Message("ski"),
+            word_of=lambda ski: ski.name if ski.name in ski_names() else None,
+        ),
         Word(
             "ski.file",
             "the path of a ski file, instead of a name",
             label=Message("file of the ski"),
-            word_of=_ski_file,
+            word_of=lambda ski: None if ski.name in ski_names() else ski.name,
             names_file=True,
         ),
     ]
@@ -150,7 +137,7 @@ class Scenario(Shown):
             "boots.file",
             "poses of the boots over time or distance (CSV, .mot or .sto); default: they stay where the sledge has "
             "them",
-            word_of=_boots_file,
+            word_of=lambda boots: boots and boots.source,
             names_file=True,
         ),
     ] = None
@@ -177,23 +164,14 @@ class Scenario(Shown):
         require_declared(self)
         if self.camber_rounding is not None:
             object.__setattr__(self, "ski", self.ski.camber_rounded(self.camber_rounding))
-        require_sound(
-            self.slope,
-            self.sledge,
-            self.ski,
-            clamp_length=self.clamp_length,
-            start=self.start,
-            shear=self.shear,
-            friction=self.contact.friction_at(self.start.speed),
-        )
+        require_sound(self)
         if self.course is not None and self.course.axes != "metres":
             object.__setattr__(self, "course", course_on_slope(self.course, self.slope))
-        require_skier(self.skier, self.sledge, has_boots=self.boots is not None, has_course=self.course is not None)
 
     def with_(self, **changes: Any) -> Scenario:
         """Copy of the scenario with other parts or values.
 
-        **changes: Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio
+        changes: Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio
             is used if it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers by the
             keys of a scenario file without their section, in the units in their names.
         Raises ParameterError: a name is not a part and no key (the nearest is named), a value is outside its range, or
@@ -224,10 +202,7 @@ class Scenario(Shown):
             friction = f"μ of {contact.friction_law.source}"
         rows = (
             ("slope", slope),
-            (
-                "snow",
-                replace(contact.snow, unloading_ratio=contact.unloading_ratio).in_words,
-            ),
+            ("snow", replace(contact.snow, unloading_ratio=contact.unloading_ratio).in_words),
             ("friction", f"{friction}, drag area {amount(self.air.drag_area, 'm²')}"),
             ("sledge", f"{amount(sledge.mass, 'kg')}, edge angle {amount(sledge.edge_angle / DEGREE, '°')}"),
             ("ski", repr(self.ski).strip("<>")),

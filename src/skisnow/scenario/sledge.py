@@ -178,8 +178,7 @@ class Shear:
     snow_density: Annotated[
         float | None,
         Quantity(
-            "shear.snow_density_kg_per_m3",
-            'density for law = "by-density", whose S_f (Eqn 14) replaces the snow\'s',
+            "shear.snow_density_kg_per_m3", 'density for law = "by-density", whose S_f (Eqn 14) replaces the snow\'s'
         ),
         Label(Message("density of the snow"), symbol="ρ"),
         Allowed(151.7, 917.0),  # below, Eqn 14 gives none

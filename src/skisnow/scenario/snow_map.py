@@ -170,7 +170,11 @@ def read_snow_map(path: str | Path) -> SnowMap:
         raise ParameterError("{path}: no column of {columns}, or no row. {action}").tag(
             "missing", path=path, columns=list(SIZES), action=_ACTION
         )
-    grids = _read_grids(path, names) if "y_m" in rows[0].cells else _grids_along_x(path, rows, names)
+    if "y_m" in rows[0].cells:
+        table = read_grid_table(path, names, action=_ACTION)
+        grids = {name: Grid(table.x, table.y, SIZES[name] * values) for name, values in table.columns.items()}
+    else:
+        grids = _grids_along_x(path, rows, names)
     try:
         return SnowMap(
             hardness=grids.get("H_V_N_per_mm3"),
@@ -188,11 +192,6 @@ def _checked_row(row: CsvRow) -> CsvRow:
         if name in row.cells and not number_within(row, name) > 0.0:
             raise row.refused(name, Message("A number above 0 is needed."), code="out_of_range")
     return row
-
-
-def _read_grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
-    table = read_grid_table(path, names, action=_ACTION)
-    return {name: Grid(table.x, table.y, SIZES[name] * values) for name, values in table.columns.items()}
 
 
 def _grids_along_x(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:
