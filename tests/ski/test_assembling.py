@@ -158,7 +158,6 @@ def test_narrowest_place_is_behind_the_middle() -> None:
     width = SLALOM.width_at(station)
     assert station[np.argmin(width)] - LAYOUT.middle == pytest.approx(-0.0675, abs=2e-5)
     assert 0.068 - width.min() == pytest.approx(0.347e-3, abs=1e-6)
-    assert SLALOM.narrowing == pytest.approx(0.068 - width.min(), abs=1e-9)
 
 
 def test_curvature_of_the_side_line_is_constant() -> None:
@@ -180,7 +179,6 @@ def test_straight_piece_without_tip() -> None:
     piece = layout_of_lengths(length=0.2, running_length=0.2, sidecut_length=0.2, tail_overhang=0.0)
     outline = ArcOutline(layout=piece, tip_width=0.062, waist_width=0.062, tail_width=0.062)
     assert np.all(outline.width_at(np.linspace(0.1, -0.1, 9)) == 0.062)
-    assert outline.narrowing == 0.0
 
 
 def test_the_tip_ends_as_wide_as_said() -> None:

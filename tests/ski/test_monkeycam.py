@@ -8,7 +8,7 @@ import pytest
 from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import ParameterError
-from skisnow.ski import BaseShape, Ski, read_monkeycam, read_ski
+from skisnow.ski import Ski, read_ski
 
 SHAPES = Path(__file__).parents[3] / "shared" / "data" / "ski-shapes"
 
@@ -39,8 +39,10 @@ def design(tmp_path: Path) -> Callable[..., Path]:
     return written
 
 
-def ski_of(path: Path) -> Ski:
-    return read_monkeycam(path, mass=2.0, bending_stiffness=[100, 400, 100], torsional_stiffness=[50, 150, 50])
+def ski_of(path: Path, folder: Path | None = None) -> Ski:
+    file = (folder or path.parent) / "mine.toml"
+    file.write_text(f'shape = "{path}"\nmass_kg = 2\nEI_N_m2 = [100, 400, 100]\nGJ_N_m2 = [50, 150, 50]\n')
+    return read_ski(file)
 
 
 def require_sample_ski(ski: Ski) -> None:
@@ -58,18 +60,18 @@ def test_widths_are_those_that_monkeycam_prints(design: Callable[..., Path]) -> 
     require_sample_ski(ski_of(design()))
 
 
-def test_the_sample_file_itself() -> None:
+def test_the_sample_file_itself(tmp_path: Path) -> None:
     path = SHAPES / "ski-def.json"
     if not path.exists():
         pytest.skip("the shapes of MonkeyCAM are not beside the repository")
-    require_sample_ski(ski_of(path))
+    require_sample_ski(ski_of(path, tmp_path))
 
 
-def test_a_snowboard_is_an_arc_too() -> None:
+def test_a_snowboard_is_an_arc_too(tmp_path: Path) -> None:
     path = SHAPES / "board-def.json"
     if not path.exists():
         pytest.skip("the shapes of MonkeyCAM are not beside the repository")
-    board = ski_of(path)
+    board = ski_of(path, tmp_path)
     sagitta = 11.0 - math.sqrt(11.0**2 - 0.68**2)
     assert board.sidecut_widths == pytest.approx((0.250 + 2 * sagitta - 0.002, 0.246, 0.246 + 2 * sagitta - 0.002))
 
@@ -77,18 +79,6 @@ def test_a_snowboard_is_an_arc_too() -> None:
 @pytest.mark.parametrize("text", ["161cm", "1610mm", "1.61 m", 161, "161", "63.38582677165354in", '63.38582677165354"'])
 def test_lengths_in_any_unit(design: Callable[..., Path], text: object) -> None:
     assert ski_of(design(effective_edge_length=text)).sidecut_length == pytest.approx(1.61, rel=1e-12)
-
-
-def test_what_a_shape_does_not_know_is_the_users(design: Callable[..., Path]) -> None:
-    ski = read_monkeycam(
-        design(), mass=2.0, bending_stiffness=[300], torsional_stiffness=[100], running_length=1.5,
-        base=BaseShape(camber=0.004), base_bevel=0.01,
-    )  # fmt: skip
-    assert (ski.running_length, ski.base_bevel) == (1.5, 0.01)
-    heights = ski.at([0.06, *ski.contact_points]).base_height
-    assert heights[0] - heights[1:] == pytest.approx([0.004, 0.004], abs=1e-12)
-    with pytest.raises(TypeError, match="bending_stiffness"):
-        read_monkeycam(design(), mass=2.0, torsional_stiffness=[100])  # type: ignore[call-arg]
 
 
 def test_a_file_names_a_shape(design: Callable[..., Path]) -> None:

@@ -31,7 +31,7 @@ class ArcOutline:
 
     - The side line is one parabola (constant curvature to a part in a thousand) through the half widths at the front
       end, the middle and the rear end of the sidecut length. With tip and tail unlike, the ski is narrowest a little
-      behind the middle, by `narrowing` less than the waist.
+      behind the middle, by (tip - tail)²/(8 (tip + tail - 2 waist)) less than the waist.
     - In front of the sidecut length the outline closes with a quarter ellipse, cut off at ``end_width``.
     - Behind the sidecut length it runs straight.
 
@@ -62,19 +62,6 @@ class ArcOutline:
     @property
     def _sidecut_width(self) -> float:
         return self.tip_width + self.tail_width - 2.0 * self.waist_width
-
-    @property
-    def narrowing(self) -> float:
-        """Width of the waist minus that of the narrowest place (m): (tip - tail)²/(8 (tip + tail - 2 waist)).
-
-        >>> from .layout import layout_of_lengths
-        >>> layout = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
-        >>> slalom = ArcOutline(layout=layout, tip_width=0.116, waist_width=0.068, tail_width=0.101)
-        >>> round(slalom.narrowing * 1e3, 2)  # mm
-        0.35
-        """
-        taper = self.tip_width - self.tail_width
-        return taper**2 / (8.0 * self._sidecut_width) if self._sidecut_width > 0 else 0.0
 
 
 FEWEST_ROWS: Final = 3
@@ -165,7 +152,12 @@ class SkiParts:
         like: a ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest
             points: tables with the same number of rows, which differ smoothly; None: own stations.
         """
-        station = self._make_grid() if like is None else self._moved_grid(like)
+        if like is None:
+            station = self._make_grid()
+        elif self.stations is not None:
+            station = like.station
+        else:
+            station = moved_stations(like.station, like.layout, self.layout)
         width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
         base_height = self.base(station) if callable(self.base) else self.base.height_at(station, self.layout)
         mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
@@ -191,9 +183,6 @@ class SkiParts:
             base=shape,
             keys=self.keys,
         )
-
-    def _moved_grid(self, like: Ski) -> FloatArray:
-        return like.station if self.stations is not None else moved_stations(like.station, like.layout, self.layout)
 
     def _make_grid(self) -> FloatArray:
         own_stations = np.empty(0) if self.stations is None else self.stations

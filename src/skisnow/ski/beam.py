@@ -245,12 +245,7 @@ class ClampedSki:
 
 @functools.lru_cache(maxsize=32)
 def clamped(
-    ski: Ski,
-    clamp_length: float,
-    elements: int,
-    footprint_stiffness: float | None = None,
-    *,
-    finer_ends: bool = False,
+    ski: Ski, clamp_length: float, elements: int, footprint_stiffness: float | None = None, *, finer_ends: bool = False
 ) -> ClampedSki:
     """Divide a ski into about that many elements of equal length and clamp it at the boot.
 

@@ -86,8 +86,8 @@ class FileParts:
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
         values.refuse_together(outlined, "shape", Message("Remove one of them."))
         file = values.beside("shape") or values.file
-        shape = monkeycam_shape(file, running_length=values.said.running_length)
-        return shape.outline.layout, shape.outline.width_at, shape.name
+        name, outline = monkeycam_shape(file, running_length=values.said.running_length)
+        return outline.layout, outline.width_at, name
 
     def _outline_from_ski_file(self) -> tuple[Layout, StationFunction, str]:
         """Tip, tail and lengths, width along the ski, and name: from the ski file's table, otherwise from its keys."""

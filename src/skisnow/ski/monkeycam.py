@@ -10,20 +10,16 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
-
-import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import CM, MM
 from .._support.user_files import read_json
-from .assembling import ArcOutline, SkiParts, stiffness_table
+from .assembling import ArcOutline
 from .file_values import refuse
-from .layout import BaseShape, layout_of_lengths
-from .ski import Ski
+from .layout import layout_of_lengths
 
 STRAIGHTEST: Final = 1000.0
 """Sidecut radius (m) beyond which no ski with a sidecut is made."""
@@ -33,54 +29,15 @@ _LARGEST = 1e9
 _LENGTH = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?)\s*+([a-zA-Z\"]*+)")
 
 
-@dataclass(frozen=True, slots=True)
-class MonkeycamShape:
-    """Shape in a design file of MonkeyCAM: a ski's shape: its name and its outline (SI)."""
+def monkeycam_shape(path: Path, *, running_length: float | None = None) -> tuple[str, ArcOutline]:
+    """Name and outline (SI) of a ski in a design file of MonkeyCAM.
 
-    name: str
-    outline: ArcOutline
-
-
-def read_monkeycam(
-    path: Path,
-    *,
-    mass: float,
-    bending_stiffness: npt.ArrayLike,
-    torsional_stiffness: npt.ArrayLike,
-    stiffness_station: npt.ArrayLike | None = None,
-    running_length: float | None = None,
-    base: BaseShape | None = None,
-    base_bevel: float = 0.0,
-    edge_width: float = 0.002,
-) -> Ski:
-    """Read a ski whose shape is in a design file of MonkeyCAM; missing quantities have no default.
-
-    path: of ``ski-def.json``.
-    mass, bending_stiffness, torsional_stiffness, stiffness_station, base, base_bevel, edge_width: as in `arc_ski`.
     running_length: between the contact points (m); default: the effective edge (modelling assumption).
 
     The sidecut length is the effective edge; the boot is behind its middle by the stance setback. Nose and tail beyond
     it are closed as in `ArcOutline`: the curves of the file's nose and tail shape are not read, nor is the thickness
     of the core, from which no stiffness follows without the materials.
     """
-    shape = monkeycam_shape(path, running_length=running_length)
-    layout = shape.outline.layout
-    return SkiParts(
-        name=shape.name,
-        source=f"shape from {path.name} of MonkeyCAM",
-        layout=layout,
-        width=shape.outline.width_at,
-        base=BaseShape() if base is None else base,
-        bending_stiffness=stiffness_table(bending_stiffness, stiffness_station, layout).at,
-        torsional_stiffness=stiffness_table(torsional_stiffness, stiffness_station, layout).at,
-        mass=mass,
-        base_bevel=base_bevel,
-        edge_width=edge_width,
-    ).assembled()
-
-
-def monkeycam_shape(path: Path, *, running_length: float | None = None) -> MonkeycamShape:
-    """Read the outline of a design file of MonkeyCAM; parameters and errors as in `read_monkeycam`."""
     board = _read_board(path)
     edge, waist, taper = (_length(path, board, key) for key in ("effective edge length", "waist width", "taper"))
     radius = _length(path, board, "sidecut radius")
@@ -99,7 +56,7 @@ def monkeycam_shape(path: Path, *, running_length: float | None = None) -> Monke
     outline = ArcOutline(
         layout=layout, tip_width=widest + taper / 2.0, waist_width=waist, tail_width=widest - taper / 2.0
     )
-    return MonkeycamShape(str(board.get("name") or path.stem), outline)
+    return str(board.get("name") or path.stem), outline
 
 
 def _read_board(path: Path) -> dict[str, Any]:

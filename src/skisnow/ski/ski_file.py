@@ -238,14 +238,15 @@ class Sources:
     def ski(self, word: str) -> tuple[Ski, tuple[str, ...]]:
         """The ski of a name or path, and the warnings of its reader."""
         if word not in self._skis:
-            self._skis[word] = with_range_warnings(lambda: read_ski(self._ski_place(word)))
+            self._skis[word] = with_range_warnings(lambda: read_ski(self.ski_file(word) or word))
         return self._skis[word]
 
     def named_snow(self, words: Mapping[str, Any]) -> SnowProperties:
         """The snow of the words `published`, or `results` and `site`."""
-        named = (words.get("published"), words.get("results"), words.get("site"))
+        named = published, results, site = words.get("published"), words.get("results"), words.get("site")
         if named not in self._snows:
-            self._snows[named] = self._read_snow(*named)
+            from_file = None if results is None else snow_from_results(self.path(results), site=site)
+            self._snows[named] = from_file or published_snow(published or "")
         return self._snows[named]
 
     def take_snow(self, snow: SnowProperties, *, results: str, site: str | None) -> None:
@@ -267,11 +268,3 @@ class Sources:
         place = self.path(word)
         looks_like_one = Path(word).suffix.lower() in (".toml", ".json") or Path(word).name != word
         return place if looks_like_one or is_file(place) else None
-
-    def _ski_place(self, word: str) -> str | Path:
-        return self.ski_file(word) or word
-
-    def _read_snow(self, published: str | None, results: str | None, site: str | None) -> SnowProperties:
-        if results is not None:
-            return snow_from_results(self.path(results), site=site)
-        return published_snow(published or "")
