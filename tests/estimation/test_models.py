@@ -187,7 +187,6 @@ def printed_fits() -> tuple[ModelFit, ...]:
 def test_the_papers_own_numbers_select_eqn_12() -> None:
     """56.1 N against 53.6 N is 4.7 %: the row in which nothing is fitted is within 5 % of the best."""
     assert select_model(printed_fits()).model.id == "H_V:a=none,b=one"
-    assert select_model(printed_fits(), tolerance=0.03).model.id == "H_V:a=none,b=constant"
 
 
 @pytest.mark.parametrize(

@@ -254,18 +254,8 @@ def analyse(
     """
     require_range("n_resamples", n_resamples, FEWEST_RESAMPLES)
     require_range("difference", difference, 0.0, np.inf, above=True, below=True)
-    read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
-    return _make_analysis(read, geometry, seed, n_resamples, difference, progress)
-
-
-def _make_analysis(
-    campaign: Campaign,
-    geometry: GeometryForm,
-    seed: int,
-    n_resamples: int,
-    difference: float,
-    progress: Callable[[str], None] | None,
-) -> Analysis:
+    if not isinstance(campaign, Campaign):
+        campaign = read_campaign(campaign, progress=progress)
     rng = np.random.default_rng(seed)
     penetration = _analyse_penetration(campaign, geometry, rng, n_resamples, progress)
     shear = _analyse_shear(campaign)

@@ -43,6 +43,7 @@ from .readings import Readings, ReadingUncertainty
 
 _EXACT_SHARE: Final = 1e-6
 """Smallest variance of a reading as a share of the median one (modelling assumption)."""
+_ITERATIONS: Final = 12
 _BLOCK: Final = 8192
 """Readings whose columns fit a core's cache."""
 
@@ -87,20 +88,13 @@ def fitted_hardness(readings: Readings, model: CampaignModel) -> FittedHardness:
     return FittedHardness(moved, offset, value, model.hardness_interval, estimates["H_V"][1])
 
 
-def pooled_scatter(scatter: FloatArray) -> float:
-    """Root mean square of the series' relative scatters; series without one take no part, 0 if none has any."""
-    finite = scatter[np.isfinite(scatter)]
-    return float(np.sqrt(np.mean(finite**2))) if finite.size else 0.0
-
-
-def fit_models_with_depth_errors(
-    fitted: FittedHardness, uncertainty: ReadingUncertainty, *, n_iterations: int = 12
-) -> tuple[ModelFit, ...]:
+def fit_models_with_depth_errors(fitted: FittedHardness, uncertainty: ReadingUncertainty) -> tuple[ModelFit, ...]:
     """Fit the nine candidate models (`MODELS`) with weights for errors of load and depth (effective variance).
 
     The rmse are those of the load (N) without weights, for comparison with `models.fit_models`.
     """
-    readings, hardnesses, scatter = fitted.readings, fitted.value, pooled_scatter(fitted.scatter)
+    readings, hardnesses, scatters = fitted.readings, fitted.value, fitted.scatter[np.isfinite(fitted.scatter)]
+    scatter = float(np.sqrt(np.mean(scatters**2))) if scatters.size else 0.0
     fits: list[ModelFit] = []
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}
     slopes_of = {symbol: _depth_slopes(readings, H) for symbol, H in hardnesses.items()}
@@ -109,7 +103,7 @@ def fit_models_with_depth_errors(
         slopes = slopes_of[model.hardness]
         weight = _effective_weights(readings, readings.load, np.zeros(readings.n), uncertainty, scatter)
         previous = np.full(4, np.nan)
-        for _ in range(n_iterations if model.n_parameters else 0):
+        for _ in range(_ITERATIONS if model.n_parameters else 0):
             ends = _weighted_ends(basis, model, readings.load, weight)
             weight = _effective_weights(readings, basis.columns @ ends, slopes @ ends, uncertainty, scatter)
             if np.allclose(ends, previous, rtol=1e-6, atol=0.0):

@@ -53,11 +53,7 @@ def compare_nested_rows(fits: tuple[ModelFit, ...]) -> tuple[NestedRows, ...]:
 
 def _compare(full: ModelFit, reduced: ModelFit) -> NestedRows:
     test = nested_f_test(
-        full.sse,
-        reduced.sse,
-        n=full.n,
-        n_parameters_full=full.n_parameters,
-        n_parameters_reduced=reduced.n_parameters,
+        full.sse, reduced.sse, n=full.n, n_parameters_full=full.n_parameters, n_parameters_reduced=reduced.n_parameters
     )
     change = 100.0 * (reduced.rmse / full.rmse - 1.0) if full.rmse > 0 else float("nan")
     if abs(change) <= EQUAL_PERCENT:

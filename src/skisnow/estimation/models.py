@@ -262,6 +262,8 @@ def fit_models(readings: Readings, hardnesses: dict[str, FloatArray]) -> tuple[M
     return tuple(fit_model(readings, bases[model.hardness], model, of_load[model.hardness]) for model in MODELS)
 
 
+TOLERANCE: Final = 0.05
+"""Relative rmse above the best at which a simpler row is chosen."""
 FEWEST_SERIES: Final = 4
 """Fewer series do not tell one law from another (modelling assumption)."""
 FEWEST_ANGLES: Final = 2
@@ -283,11 +285,11 @@ def reason_without_choice(readings: Readings) -> str:
     )
 
 
-def select_model(fits: tuple[ModelFit, ...], *, tolerance: float = 0.05) -> ModelFit:
-    """The simplest row with an rmse within a tolerance of the best: fewest parameters, smaller rmse, fewer terms.
+def select_model(fits: tuple[ModelFit, ...]) -> ModelFit:
+    """The simplest row with an rmse within 5 % of the best: fewest parameters, smaller rmse, fewer terms.
 
     Where rows repeat each other, because the edge angle does not vary, the nominally simpler one is chosen.
     """
     best = min(fit.rmse for fit in fits)
-    near = [fit for fit in fits if fit.rmse <= best * (1.0 + tolerance)]
+    near = [fit for fit in fits if fit.rmse <= best * (1.0 + TOLERANCE)]
     return min(near, key=lambda fit: (fit.n_parameters, fit.rmse, fit.model.n_terms, fit.model.n_parameters))

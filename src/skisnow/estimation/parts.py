@@ -148,12 +148,7 @@ class SiteMean:
 
 
 def site_means(
-    quantity: str,
-    values: FloatArray,
-    site: Sequence[str],
-    *,
-    geometric: bool,
-    pairs: Sequence[GroupComparison] = (),
+    quantity: str, values: FloatArray, site: Sequence[str], *, geometric: bool, pairs: Sequence[GroupComparison] = ()
 ) -> tuple[SiteMean, ...]:
     """The mean of each site with its interval from the scatter between its experiments, in alphabetical order.
 
@@ -178,9 +173,14 @@ def site_snow(
     unloading_ratio: float | None,
 ) -> SnowProperties:
     """The means over the used experiments of a site, as `skisnow.read_snow` reads them from results.json."""
-    pressed, sheared = _hardness_by_site(penetration, campaign), _stress_by_site(shear, campaign)
+    pressed = sheared = np.zeros(0), np.zeros(0, dtype=object)
+    if penetration is not None and campaign.penetration is not None:
+        used = penetration.screened.used
+        pressed = _used(penetration.hardness["H_V"].value, used, campaign.penetration.site)
+    if shear is not None and campaign.shear is not None:
+        sheared = _used(shear.stress.value, shear.screened.used, campaign.shear.site)
     site = site_of_campaign(campaign, site)
-    hardness, stress = (_at_site(site, *pair) for pair in (pressed, sheared))
+    hardness, stress = (value if site is None else value[sites == site] for value, sites in (pressed, sheared))
     name = campaign.name
     if not hardness.size:
         sites = sorted({str(row) for row in pressed[1]})
@@ -197,31 +197,10 @@ def site_snow(
     return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
 
 
-def _hardness_by_site(penetration: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
-    """H_V (N/m³) and site of each used penetration experiment that has one."""
-    tests = campaign.penetration
-    if penetration is None or tests is None:
-        return np.zeros(0), np.zeros(0, dtype=object)
-    return _used(penetration.hardness["H_V"].value, penetration.screened.used, tests.site)
-
-
-def _stress_by_site(shear: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
-    """S_f (N/m²) and site of each used shear experiment that has one."""
-    tests = campaign.shear
-    if shear is None or tests is None:
-        return np.zeros(0), np.zeros(0, dtype=object)
-    return _used(shear.stress.value, shear.screened.used, tests.site)
-
-
 def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[FloatArray, TextArray]:
     """Values of the used experiments that have one, and the site of each."""
     there = used & np.isfinite(value)
     return value[there], np.array(site, dtype=object)[there]
-
-
-def _at_site(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
-    """Values of a site; all values without a site."""
-    return value if site is None else value[sites == site]
 
 
 def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
@@ -232,7 +211,9 @@ def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
 
 def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
     """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
-    return (*_similar_name_notes(campaign), *_untested_site_notes(campaign), *_unread_file_notes(campaign))
+    unread = ", ".join(campaign.unread_files)
+    note = Message("Not read, as no table of a campaign has this name: {listed}.", listed=unread)
+    return (*_similar_name_notes(campaign), *_untested_site_notes(campaign), *((note,) if unread else ()))
 
 
 def _test_sites(campaign: Campaign) -> set[str]:
@@ -277,9 +258,3 @@ def _untested_site_notes(campaign: Campaign) -> Iterator[str]:
                 name=name,
                 listed=listed,
             )
-
-
-def _unread_file_notes(campaign: Campaign) -> Iterator[str]:
-    if campaign.unread_files:
-        listed = ", ".join(campaign.unread_files)
-        yield Message("Not read, as no table of a campaign has this name: {listed}.", listed=listed)

@@ -6,7 +6,7 @@ S_f and H_V on edge angle, density, drop-cone depth and on each other. A further
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
@@ -221,30 +221,8 @@ def fit_warnings(fits: tuple[ModelFit, ...], selected: ModelFit | None, load: Fl
     """Sentence about a selected model that misses the loads (N), or about all models where none fits them."""
     size = float(np.sqrt(np.mean(load**2)))
     if fits and all(fit.rmse > size for fit in fits):
-        return tuple(_all_fail(fits, size))
-    return tuple(_poor(selected, size))
-
-
-def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
-    """Warning if the selected model misses the loads of the root mean square ``size`` (N) by too much."""
-    if selected is not None and selected.rmse > POOR * size:
-        yield (
-            Message(
-                "Even the selected law misses the loads by {value:.0f} % of their root mean square ({rmse:.4g} N of "
-                "{size:.4g} N). {action}",
-                value=100.0 * selected.rmse / size,
-                rmse=selected.rmse,
-                size=size,
-                action=_ACTION,
-            )
-        )
-
-
-def _all_fail(fits: tuple[ModelFit, ...], size: float) -> Iterator[str]:
-    """Warning that every model misses the loads by more than their root mean square ``size`` (N)."""
-    best = min(fits, key=lambda fit: fit.rmse)
-    yield (
-        Message(
+        best = min(fits, key=lambda fit: fit.rmse)
+        message = Message(
             "All candidate models miss the loads by more than their root mean square, {size:.4g} N; the smallest rmse "
             "is {rmse:.5g} N, of {words}. No force at all would describe the readings better. {action}",
             size=size,
@@ -252,4 +230,15 @@ def _all_fail(fits: tuple[ModelFit, ...], size: float) -> Iterator[str]:
             words=best.model.words,
             action=_ACTION,
         )
+        return (message,)
+    if selected is None or selected.rmse <= POOR * size:
+        return ()
+    message = Message(
+        "Even the selected law misses the loads by {value:.0f} % of their root mean square ({rmse:.4g} N of {size:.4g} "
+        "N). {action}",
+        value=100.0 * selected.rmse / size,
+        rmse=selected.rmse,
+        size=size,
+        action=_ACTION,
     )
+    return (message,)
