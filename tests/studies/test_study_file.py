@@ -121,7 +121,7 @@ ANGLES = f"{AXES}edge_angle_deg = "
             OUT + FIXED.replace("slalom", "paper-tool") + GRID,
             coded("out_of_range", clamp_length=0.3, name="paper-tool"),
         ),
-        (OUT + FIXED + "clamp_length_m = 300\n" + GRID, coded("out_of_range", in_metres=0.3)),
+        (OUT + FIXED + "clamp_length_m = 300\n" + GRID, coded("out_of_range", clamp_length=300.0)),
         (OUT + FIXED + 'results = "nowhere.json"\n' + GRID, "contradiction"),
         (OUT + FIXED.replace("published", "results") + GRID, "wrong_kind"),
         (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "contradiction"),

@@ -19,14 +19,7 @@ from .._support.errors import ParameterError
 from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
-from .checks import (
-    require_choices,
-    require_kinds,
-    require_ranges,
-    require_strength,
-    require_within,
-    unloading_ratio_of,
-)
+from .checks import require_choices, require_kinds, require_ranges, require_strength, require_within, unloading_ratio_of
 from .edge_line import EdgeLine
 from .laws import SnowLaws, equivalent_snow, snow_laws
 from .result import Equilibrium, equilibrium_of, radius_at_boot

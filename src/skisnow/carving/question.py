@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final, Literal
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM3, in_degrees_if_radians
+from .._support.units import N_PER_MM3, in_degrees_if_radians
 from ..parameters import Allowed, Label, Quantity, own_quantities, require_declared, suggest_and_list
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
@@ -56,19 +56,9 @@ def require_complete(values: Mapping[str, object]) -> None:
     rests = values.get("at_rest") is True
     for name in ("ski", "edge_angle_deg", "load_N", *(() if rests else ("unloading_ratio",))):
         if name not in values:
-            example = CARVE_KEYS[name].example
-            meaning = CARVE_KEYS[name].meaning
-            problem = (
-                Message(
-                    "{name} is missing: {meaning}. It has no default. Give one, e.g. {example}",
-                    name=name,
-                    meaning=meaning,
-                    example=example,
-                )
-                if example
-                else Message("{name} is missing: {meaning}. It has no default", name=name, meaning=meaning)
+            raise ParameterError("{name} is missing: {meaning}. It has no default").tag(
+                "missing", name=name, meaning=CARVE_KEYS[name].meaning
             )
-            raise ParameterError(problem).tag("missing")
     _require_one_snow(set(values), rests)
 
 
@@ -258,28 +248,11 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
     Raises ParameterError: half of the clamp reaches beyond the tip or the tail.
     """
     most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
-    if clamp_length_m < most:
-        return
-    fields = {"clamp_length": clamp_length_m, "name": ski.name, "most": most, "in_metres": clamp_length_m * MM}
-    if clamp_length_m == CARVE_KEYS["clamp_length_m"].default:
-        problem = Message(
-            "clamp_length_m (--clamp-length-m) is {clamp_length:g} (the default); the ski {name} allows less than "
-            "{most:.3g} m: write --clamp-length-m 0",
-            **fields,
-        )
-    elif clamp_length_m >= 20.0 and clamp_length_m * MM < most:
-        problem = Message(
+    if clamp_length_m >= most:
+        raise ParameterError(
             "clamp_length_m (--clamp-length-m) is {clamp_length:g}; the ski {name} allows less than {most:.3g} m: "
-            "write --clamp-length-m 0, or {in_metres:g} if the number is in mm",
-            **fields,
-        )
-    else:
-        problem = Message(
-            "clamp_length_m (--clamp-length-m) is {clamp_length:g}; the ski {name} allows less than {most:.3g} m: "
-            "write --clamp-length-m 0",
-            **fields,
-        )
-    raise ParameterError(problem).tag("out_of_range")
+            "write --clamp-length-m 0"
+        ).tag("out_of_range", clamp_length=clamp_length_m, name=ski.name, most=most)
 
 
 def implausible_values(question: CarveQuestion) -> tuple[str, ...]:

@@ -30,13 +30,8 @@ if TYPE_CHECKING:
 
 
 CONDITIONS: Final = (
-    "edge_angle_deg",
-    "load_N",
-    "moment_Nm",
-    "unloading_ratio",
-    "snow.H_V_N_per_mm3",
-    "snow.S_f_N_per_mm2",
-)
+    "edge_angle_deg", "load_N", "moment_Nm", "unloading_ratio", "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2",
+)  # fmt: skip
 """Parameters besides those of the ski. Load and edge angle change the side force, load × tan ϑ, with them."""
 AT_KINK: Final = 1e-6
 """Relative distance to a kink below which a derivative has two values."""
@@ -101,12 +96,7 @@ class _ParameterDerivatives:
             return np.zeros((5, len(model.stations.station)))
         stretch = self.shape.length / (model.node[:-1] - model.node[1:])
         return np.array(
-            [
-                self.shape.place,
-                np.repeat(self.shape.length / 2.0, 2),
-                *self.shape.sections,
-                np.repeat(stretch, 2),
-            ]
+            [self.shape.place, np.repeat(self.shape.length / 2.0, 2), *self.shape.sections, np.repeat(stretch, 2)]
         )
 
 

@@ -9,17 +9,6 @@ from .score import Score
 from .worth import Worth, compare_variants, drawn_for_race, worth_changes
 
 __all__ = [
-    "LineTurn",
-    "PointRacer",
-    "QuickestLine",
-    "RacingLine",
-    "Score",
-    "Worth",
-    "compare_variants",
-    "drawn_for_race",
-    "follower_line",
-    "quickest_line",
-    "read_line",
-    "worth_changes",
-    "write_line",
-]
+    "LineTurn", "PointRacer", "QuickestLine", "RacingLine", "Score", "Worth", "compare_variants", "drawn_for_race",
+    "follower_line", "quickest_line", "read_line", "worth_changes", "write_line",
+]  # fmt: skip

@@ -18,20 +18,9 @@ from .moving_boots import BootHistory
 from .run_forces import BalanceHistory, node_lengths
 
 Outcome: TypeAlias = Literal[
-    "finished",
-    "distance_reached",
-    "end_of_slope",
-    "tipped_over",
-    "fell",
-    "airborne",
-    "sunk",
-    "missed_gate",
-    "straddled",
-    "energy_open",
-    "step_too_small",
-    "not_finite",
-    "interrupted",
-]
+    "finished", "distance_reached", "end_of_slope", "tipped_over", "fell", "airborne", "sunk", "missed_gate",
+    "straddled", "energy_open", "step_too_small", "not_finite", "interrupted",
+]  # fmt: skip
 Strength: TypeAlias = Callable[[float], float]
 """Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 

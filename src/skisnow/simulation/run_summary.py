@@ -98,10 +98,7 @@ def least_turn_radius(run: Run) -> float | None:
 
 def radii_dict(run: Run) -> dict[str, float | None]:
     """Median and 5 % quantile of the turn radius (m), without its sign and once the start is over; None if straight."""
-    return {
-        "turn_radius_median_m": run.turn_radius_quantile(0.5),
-        "turn_radius_p5_m": run.turn_radius_quantile(0.05),
-    }
+    return {"turn_radius_median_m": run.turn_radius_quantile(0.5), "turn_radius_p5_m": run.turn_radius_quantile(0.05)}
 
 
 def run_warnings(run: Run) -> tuple[str, ...]:

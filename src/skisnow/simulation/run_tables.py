@@ -20,24 +20,10 @@ from .moving_boots import BootHistory
 from .run import Run
 
 COLUMNS: Final = (
-    "time_s",
-    "x_m",
-    "y_m",
-    "z_m",
-    "speed_m_per_s",
-    "heading_deg",
-    "turn_radius_m",
-    "left_x_m",
-    "left_y_m",
-    "left_depth_mm",
-    "right_x_m",
-    "right_y_m",
-    "right_depth_mm",
-    "left_total_force_N",
-    "right_total_force_N",
-    "left_normal_force_N",
-    "right_normal_force_N",
-)
+    "time_s", "x_m", "y_m", "z_m", "speed_m_per_s", "heading_deg", "turn_radius_m", "left_x_m", "left_y_m",
+    "left_depth_mm", "right_x_m", "right_y_m", "right_depth_mm", "left_total_force_N", "right_total_force_N",
+    "left_normal_force_N", "right_normal_force_N",
+)  # fmt: skip
 SKIER_COLUMNS: Final = ("lean_deg", "edge_angle_deg")
 """Columns that a skier's run has besides."""
 

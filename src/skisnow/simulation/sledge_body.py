@@ -138,9 +138,10 @@ def sledge_body(
     deflection = np.where(np.arange(ski.size) % 3 == 0, np.linspace(-1.0, 1.0, ski.size), 0.0)
     start = np.stack([np.maximum(deflection, 0.0), np.minimum(deflection, 0.0)], axis=1)  # forebody and afterbody
     damping = 2.0 * damping_ratio / float(np.sqrt(lowest_eigenvalue(ski.stiffness, ski.mass, start)))
+    unknown = np.append(ski.dof[:, 0], ski.dof[-1, 3]).astype(float)  # the first of each node, -1 where held
     skis = tuple(
         FlexibleSki(
-            boot=np.array([0.0, y, 0.0]), axes=axes, unknown=_first_unknowns(ski), mass=mass, stiffness=stiffness,
+            boot=np.array([0.0, y, 0.0]), axes=axes, unknown=unknown, mass=mass, stiffness=stiffness,
             coupling=inertia.coupling[k], damping=damping, inertia=inertia.ski,
         )
         for k, y in enumerate(sides)
@@ -149,11 +150,6 @@ def sledge_body(
         inertia=inertia.rigid, mass=inertia.mass, first_moment=inertia.first_moment, skis=skis, gravity=gravity,
         drag=drag, drag_height=drag_height,
     )  # fmt: skip
-
-
-def _first_unknowns(ski: ClampedSki) -> FloatArray:
-    """First unknown of each node, -1 where held: (nodes,)."""
-    return np.append(ski.dof[:, 0], ski.dof[-1, 3]).astype(float)
 
 
 def _lower_band(matrix: FloatArray) -> FloatArray:

@@ -21,12 +21,7 @@ Simulate: TypeAlias = Callable[[Scenario], Run]
 FINER: Final = 2.0
 """By how much each choice is refined."""
 DISPLACEMENT: Final = "snow.shear_displacement_mm"
-NUDGED: Final = (
-    "start.speed_m_per_s",
-    "sledge.edge_angle_deg",
-    "snow.H_V_N_per_mm3",
-    "snow.S_f_N_per_mm2",
-)
+NUDGED: Final = ("start.speed_m_per_s", "sledge.edge_angle_deg", "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 NUDGE: Final = 1e-3
 """Share by which each of them is changed, up and down."""
 NEAR: Final = 5.0

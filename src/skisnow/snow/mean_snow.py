@@ -19,11 +19,7 @@ _LARGEST = 1e9
 
 
 def mean_snow(
-    hardness_N_per_mm3: FloatArray,
-    stress_N_per_mm2: FloatArray,
-    *,
-    source: str,
-    where: str,
+    hardness_N_per_mm3: FloatArray, stress_N_per_mm2: FloatArray, *, source: str, where: str
 ) -> SnowProperties:
     """The snow of experiments: the geometric mean of H_V, one value or more, and the mean of S_f, which may be missing.
 

@@ -125,16 +125,10 @@ class PenetrometerRelation:
 PENETROMETER_RELATIONS: Final[Mapping[str, PenetrometerRelation]] = MappingProxyType(
     {
         "proksch-2015": PenetrometerRelation(
-            proksch_2015.SOURCE,
-            proksch_2015.WINDOW,
-            proksch_2015.snow_density,
-            proksch_2015.specific_surface_area,
+            proksch_2015.SOURCE, proksch_2015.WINDOW, proksch_2015.snow_density, proksch_2015.specific_surface_area
         ),
         "calonne-2020": PenetrometerRelation(
-            calonne_2020.SOURCE,
-            calonne_2020.WINDOW,
-            calonne_2020.snow_density,
-            calonne_2020.specific_surface_area,
+            calonne_2020.SOURCE, calonne_2020.WINDOW, calonne_2020.snow_density, calonne_2020.specific_surface_area
         ),
         "king-2020a": PenetrometerRelation(king_2020.SOURCE, king_2020.WINDOW, king_2020.snow_density_a),
         "king-2020b": PenetrometerRelation(king_2020.SOURCE, king_2020.WINDOW, king_2020.snow_density_b),

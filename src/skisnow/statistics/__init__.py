@@ -8,21 +8,7 @@ from .linear import LinearFit, VarianceShares, linear_fit, variance_shares
 from .regress import Regress, RegressStatistics, regress
 
 __all__ = [
-    "ClusterIntervals",
-    "LinearFit",
-    "NestedTest",
-    "Regress",
-    "RegressStatistics",
-    "VarianceShares",
-    "cluster_intervals",
-    "expanded_factor",
-    "linear_fit",
-    "nested_f_test",
-    "non_negative_fits",
-    "percentile_interval",
-    "regress",
-    "resampling_counts",
-    "tests_per_group",
-    "variance_shares",
-    "welch_satterthwaite",
-]
+    "ClusterIntervals", "LinearFit", "NestedTest", "Regress", "RegressStatistics", "VarianceShares",
+    "cluster_intervals", "expanded_factor", "linear_fit", "nested_f_test", "non_negative_fits", "percentile_interval",
+    "regress", "resampling_counts", "tests_per_group", "variance_shares", "welch_satterthwaite",
+]  # fmt: skip

@@ -14,15 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.units import ShownFields
 from .combined_uncertainty import require_confidence
 from .f_tests import f_ratio, f_tail
-from .least_squares import (
-    as_predictors,
-    as_response,
-    centre,
-    factorise,
-    spread,
-    standardised,
-    warn_if_ill_conditioned,
-)
+from .least_squares import as_predictors, as_response, centre, factorise, spread, standardised, warn_if_ill_conditioned
 
 
 @dataclass(frozen=True, repr=False)

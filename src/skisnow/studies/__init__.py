@@ -6,14 +6,6 @@ from .study import Study, read_study
 from .table import StudyTable, read_table
 
 __all__ = [
-    "Shard",
-    "Study",
-    "StudyState",
-    "StudyTable",
-    "merge_shards",
-    "read_study",
-    "read_table",
-    "run_shard",
-    "run_study",
+    "Shard", "Study", "StudyState", "StudyTable", "merge_shards", "read_study", "read_table", "run_shard", "run_study",
     "study_state",
-]
+]  # fmt: skip

@@ -242,7 +242,8 @@ class Axis:
         low, high = self.ends
         share = np.linspace(0.0, 1.0, self.n)
         middle = self._at(share)
-        return [self._in_kind(x) for x in (low, *middle[1:-1].tolist(), high)]
+        values = (low, *middle[1:-1].tolist(), high)
+        return [round(x) for x in values] if self.key.kind == "whole number" else list(values)
 
     def sampled(self, share: FloatArray) -> Column:
         """The values at shares from 0 to 1 of the axis; of a list each value has the same share."""
@@ -262,9 +263,6 @@ class Axis:
         low, high = (math.log(end) for end in self.ends) if self.log else self.ends
         even = low + (high - low) * share
         return np.exp(even) if self.log else even
-
-    def _in_kind(self, number: float) -> float | int:
-        return round(number) if self.key.kind == "whole number" else number
 
 
 def grid_points(axes: list[Axis], fixed: Point) -> GridPoints:

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Annotated, Any, Final, Protocol, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.units import Facts, Shown
 from .._support.user_files import is_file, read_toml
-from ..parameters import Allowed, InputValue, Quantity, build_declared, checked_table, suggest_and_list
+from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
 from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points
 from .subjects import CarveModel, ScenarioModel
 from .writing import WRITERS
@@ -194,7 +193,13 @@ def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
         raise ParameterError("[{form}] contains no varied input; write one, such as edge_angle_deg = [30, 45, 60]").tag(
             "missing", form=form
         )
-    points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_size_and_seed(varying))
+    points: Points
+    if form == "grid":
+        points = grid_points(axes, fixed)
+    else:
+        own = {name: varying[name] for name in OWN_KEYS[form] if name in varying}
+        sample = build_declared(Sample, checked_table(Sample, own, "[latin_hypercube]"))
+        points = hypercube_points(axes, fixed, sample.n, sample.seed)
     subject_.require_sound(points, fixed)
     return Study(path, _table_path(path, values), subject_, tuple(axis.key.name for axis in axes), points)
 
@@ -213,12 +218,9 @@ def _make_model(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
 def _grid_or_latin_hypercube(values: Mapping[str, Any]) -> str:
     forms = [form for form in FORMS if form in values]
     if len(forms) != 1:
-        problem = (
-            Message("a study has either [grid] or [latin_hypercube]; both are there")
-            if forms
-            else Message("a study has either [grid] or [latin_hypercube]; neither is there")
+        raise ParameterError("a study has either [grid] or [latin_hypercube]; {count} of them are there").tag(
+            "contradiction", count=len(forms)
         )
-        raise ParameterError(problem).tag("contradiction")
     return forms[0]
 
 
@@ -239,15 +241,11 @@ def _read_fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point
             raise ParameterError("fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]").tag(
                 "wrong_kind", name=name, value=value
             )
-        fixed[name] = _validate_fixed_value(keys[name], value)
+        try:
+            fixed[name] = keys[name].in_range(value)
+        except ParameterError as error:
+            raise ParameterError("fixed.{problem}").tag(error.code, problem=error) from error
     return fixed
-
-
-def _validate_fixed_value(key: Quantity, value: object) -> InputValue:
-    try:
-        return key.in_range(value)
-    except ParameterError as error:
-        raise ParameterError("fixed.{problem}").tag(error.code, problem=error) from error
 
 
 def _make_axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
@@ -266,21 +264,12 @@ def _require_key(table: str, name: str, keys: Collection[str]) -> None:
         )
 
 
-def _size_and_seed(table: Mapping[str, Any]) -> tuple[int, int]:
-    own = {name: table[name] for name in ("n", "seed") if name in table}
-    sample = build_declared(Sample, checked_table(Sample, own, "[latin_hypercube]"))
-    return sample.n, sample.seed
-
-
 def _table_path(path: Path, values: Mapping[str, Any]) -> Path:
     out = values.get("out")
     if not isinstance(out, str) or not out.strip():
-        problem = (
-            Message('out is missing; it is the place of the table, such as out = "table.csv"')
-            if out is None
-            else Message('out is {out!r}; it is the place of the table, such as out = "table.csv"', out=out)
+        raise ParameterError('out is {out!r}; it is the place of the table, such as out = "table.csv"').tag(
+            "wrong_kind", out=out
         )
-        raise ParameterError(problem).tag("wrong_kind")
     if Path(out).suffix.lower() not in WRITERS:
         raise ParameterError("out is {out!r}; the name of the table must end in {writers}").tag(
             "wrong_ending", out=out, writers=list(WRITERS)

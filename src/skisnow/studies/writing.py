@@ -76,7 +76,8 @@ def _write_csv_file(path: Path, columns: Sequence[str], rows: ValueRows) -> arra
 
 def _write_database(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
     kinds = _kinds(columns, rows())
-    types = [_database_type(kinds[name]) for name in columns]
+    of_columns = (kinds[name] for name in columns)
+    types = [next((name for taken, name in _DATABASE_TYPES if own and own <= taken), "") for own in of_columns]
     named = ", ".join(f'"{name}" {kind}'.rstrip() for name, kind in zip(columns, types, strict=True))
     with place_to_write(path) as place:
         try:
@@ -91,18 +92,11 @@ def _insert_rows(database: sqlite3.Connection, named: str, count: int, rows: Ite
         database.execute(f"create table study ({named})")
         database.execute("begin")
         marks = ", ".join("?" * count)
-        database.executemany(f"insert into study values ({marks})", ([_as_sql(value) for value in row] for row in rows))
+        as_sql = ([json.dumps(value) if isinstance(value, list) else value for value in row] for row in rows)
+        database.executemany(f"insert into study values ({marks})", as_sql)
         database.execute("commit")
     finally:
         database.close()
-
-
-def _database_type(kinds: frozenset[type]) -> str:
-    return next((name for taken, name in _DATABASE_TYPES if kinds and kinds <= taken), "")
-
-
-def _as_sql(value: Any) -> Any:
-    return json.dumps(value) if isinstance(value, list) else value
 
 
 def _write_parquet(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
@@ -145,9 +139,5 @@ def _kinds(columns: Sequence[str], rows: Iterable[list[Any]]) -> dict[str, froze
     return {name: frozenset(kinds - {type(None)}) for name, kinds in zip(columns, types_of_columns, strict=True)}
 
 
-WRITERS: Final[Mapping[str, Writer]] = {
-    ".csv": _write_csv_file,
-    ".sqlite": _write_database,
-    ".parquet": _write_parquet,
-}
+WRITERS: Final[Mapping[str, Writer]] = {".csv": _write_csv_file, ".sqlite": _write_database, ".parquet": _write_parquet}
 """By the ending of the name."""

@@ -10,13 +10,6 @@ LAWS: Final[tuple[type[FrictionLaw], ...]] = (ConstantFriction, LinearFriction, 
 """Every law for glide friction: one set of tests runs over all of them."""
 
 __all__ = [
-    "LAWS",
-    "ConstantFriction",
-    "FrictionFile",
-    "FrictionLaw",
-    "LinearFriction",
-    "QuadraticFriction",
-    "SnowState",
-    "WaterFilmFriction",
-    "read_friction_file",
-]
+    "LAWS", "ConstantFriction", "FrictionFile", "FrictionLaw", "LinearFriction", "QuadraticFriction", "SnowState",
+    "WaterFilmFriction", "read_friction_file",
+]  # fmt: skip

@@ -31,21 +31,7 @@ POINT_LAWS: Final[tuple[type[PointLaw], ...]] = (
 """Every law for one place on the snow."""
 
 __all__ = [
-    "LAWS",
-    "POINT_LAWS",
-    "AreaLaw",
-    "BilinearLaw",
-    "DepthLaw",
-    "ElasticPoint",
-    "ElementCountLaw",
-    "HypoplasticPoint",
-    "LayeredPoint",
-    "MeanPressureLaw",
-    "MeanPressurePoint",
-    "PenetrationLaw",
-    "PointLaw",
-    "ProfilePoint",
-    "VolumeLaw",
-    "VolumeWithAngleLaw",
-    "VolumeWithAnglePoint",
-]
+    "LAWS", "POINT_LAWS", "AreaLaw", "BilinearLaw", "DepthLaw", "ElasticPoint", "ElementCountLaw", "HypoplasticPoint",
+    "LayeredPoint", "MeanPressureLaw", "MeanPressurePoint", "PenetrationLaw", "PointLaw", "ProfilePoint", "VolumeLaw",
+    "VolumeWithAngleLaw", "VolumeWithAnglePoint",
+]  # fmt: skip

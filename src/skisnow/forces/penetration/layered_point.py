@@ -108,10 +108,7 @@ class LayeredPoint(DeepeningPoint):
 
     def __post_init__(self) -> None:
         require_above_zero(
-            self,
-            snow_hardness=self.snow_hardness,
-            layer_depth=self.layer_depth,
-            lower_hardness=self.lower_hardness,
+            self, snow_hardness=self.snow_hardness, layer_depth=self.layer_depth, lower_hardness=self.lower_hardness
         )
         require_not_below_zero(self, hardness_growth=self.hardness_growth)
         self._require_unloading()

@@ -17,14 +17,6 @@ LAWS: Final[tuple[type[ShearLaw], ...]] = (
 """Every law for the shear force: one set of tests runs over all of them."""
 
 __all__ = [
-    "LAWS",
-    "AngleShear",
-    "ConstantShear",
-    "DensityShear",
-    "IceCuttingShear",
-    "MachiningShear",
-    "NaturalDensityShear",
-    "ShearLaw",
-    "cutting_stress",
-    "cutting_thrust",
-]
+    "LAWS", "AngleShear", "ConstantShear", "DensityShear", "IceCuttingShear", "MachiningShear", "NaturalDensityShear",
+    "ShearLaw", "cutting_stress", "cutting_thrust",
+]  # fmt: skip
