@@ -49,16 +49,6 @@ def test_against_dense_matrices(seed: int) -> None:
     assert found.n_clusters == len(np.unique(cluster))
 
 
-def test_without_intercept_against_dense_matrices() -> None:
-    rng = np.random.default_rng(8)
-    cluster, x = np.repeat([0, 1, 2, 3], [2, 3, 5, 9]), rng.uniform(1, 2, 19)
-    y = 3 * x + rng.normal(size=19)
-    found = cluster_intervals(y, x, cluster, intercept=False)
-    errors, dof = textbook(y, x[:, None], cluster)
-    np.testing.assert_allclose(found.standard_errors, errors, rtol=1e-11)
-    np.testing.assert_allclose(found.degrees_of_freedom, dof, rtol=1e-11)
-
-
 def test_mean_of_balanced_clusters_is_the_t_interval_of_their_means() -> None:
     rng = np.random.default_rng(3)
     table = rng.normal(size=(6, 7)) + rng.normal(size=(6, 1))

@@ -66,7 +66,10 @@ def require_known(section: Mapping[str, Any]) -> None:
                 "wrong_kind", run=run, entries=entries
             )
         for word in entries:
-            _checked_key(word, f'[identify.runs."{run}"]')
+            try:
+                free_key(word)
+            except ParameterError as error:
+                raise error.at(f'[identify.runs."{run}"]') from None
 
 
 def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
@@ -76,7 +79,12 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         if word in NO_KEYS:
             continue
         own, at, run = word.partition("@")
-        key = _checked_key(own, f'[identify."{word}"]') + at + run
+        try:
+            key = free_key(own) + at + run
+        except ParameterError as error:
+            raise ParameterError('[identify."{word}"]: {problem} Other entries are {others}.').tag(
+                error.code, word=word, problem=error, others=list(NO_KEYS)
+            ) from None
         if not isinstance(table, dict):
             raise ParameterError(
                 'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
@@ -84,13 +92,6 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
             ).tag("wrong_kind", word=word, table=table, given=list(GIVEN), key=key, section=key.partition(".")[0])
         parameters[key] = checked_table(SearchEntry, table, f'[identify."{key}"]')
     return parameters
-
-
-def _checked_key(word: str, place: str) -> str:
-    try:
-        return free_key(word)
-    except ParameterError as error:
-        raise error.at(place) from None
 
 
 def _read_table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:

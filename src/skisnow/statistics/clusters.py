@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
-from .combined_uncertainty import expanded_factor, require_confidence
+from .._support.units import CONFIDENCE
+from .combined_uncertainty import expanded_factor
 from .least_squares import (
     Factorisation,
     as_predictors,
@@ -45,19 +46,12 @@ class ClusterIntervals:
     coefficients: FloatArray
 
 
-def cluster_intervals(
-    response: npt.ArrayLike,
-    predictors: npt.ArrayLike,
-    clusters: npt.ArrayLike,
-    *,
-    intercept: bool = True,
-    confidence: float = 0.95,
-) -> ClusterIntervals:
+def cluster_intervals(response: npt.ArrayLike, predictors: npt.ArrayLike, clusters: npt.ArrayLike) -> ClusterIntervals:
     """Least-squares fit with intervals that account for the clusters.
 
     Errors may depend on each other in any way within a cluster; the clusters are independent.
 
-    response, predictors, intercept, confidence: As in `linear_fit`.
+    response, predictors: As in `linear_fit`.
     clusters: Name or number of the cluster of each observation, shape (n,).
     Raises ParameterError, FitError: as `linear_fit`.
     Warns FitWarning: as `linear_fit`.
@@ -79,7 +73,6 @@ def cluster_intervals(
     >>> round(float(found.standard_errors[0]) ** 2 * 3, 9), round(float(found.degrees_of_freedom[0]), 9)
     (7.0, 2.0)
     """
-    require_confidence(confidence)
     y = as_response(response)
     X = as_predictors(predictors, len(y))
     labels = np.asarray(clusters)
@@ -88,18 +81,17 @@ def cluster_intervals(
             "wrong_shape", shape=str(labels.shape), n_y=len(y)
         )
     names, cluster = np.unique(labels, return_inverse=True)
-    columns = standardised(X, intercept=intercept)
+    columns = standardised(X, intercept=True)
     warn_if_ill_conditioned(columns.scaled)
     fit = factorise(columns)
-    shifted, middle = centre(y) if intercept else (y, np.zeros(()))
+    shifted, middle = centre(y)
     coefficients, residuals = fit.solve(shifted)
-    if intercept:
-        coefficients[0] += middle
+    coefficients[0] += middle
     n, p = fit.orthogonal.shape
     errors, dof = np.full(p, np.nan), np.full(p, np.nan)
     if len(names) > 1 and n > p:
         errors, dof = _bias_reduced(fit, residuals, cluster, len(names))
-    half = expanded_factor(dof, confidence) * errors
+    half = expanded_factor(dof, CONFIDENCE) * errors
     intervals = np.stack((coefficients - half, coefficients + half), axis=-1)
     return ClusterIntervals(intervals, errors, dof, len(names), coefficients)
 

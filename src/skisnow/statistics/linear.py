@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.units import ShownFields
-from .combined_uncertainty import require_confidence
+from .._support.units import CONFIDENCE, ShownFields
 from .f_tests import f_ratio, f_tail
 from .least_squares import as_predictors, as_response, centre, factorise, spread, standardised, warn_if_ill_conditioned
 
@@ -24,7 +23,7 @@ class LinearFit(ShownFields):
     Attributes
     ----------
     n, n_parameters, rank
-        Observations n, coefficients p (an intercept counted), rank of the design (equal to p).
+        Observations n, coefficients p with the intercept, rank of the design (equal to p).
     coefficients, standard_errors
         Shape (p,), the intercept first.
     intervals
@@ -36,10 +35,9 @@ class LinearFit(ShownFields):
     sse, rmse, rmse_dof
         Sum of squared residuals; its root mean over n; its root mean over n - p (MATLAB's).
     r2
-        1 - SSE / sum of squares about the mean; NaN without an intercept and where the response does not vary.
+        1 - SSE / sum of squares about the mean; NaN where the response does not vary.
     F, p
-        F test against the intercept-only model, p the chance of an F as large; NaN without an intercept, without a
-        predictor, and for n = p.
+        F test against the intercept-only model, p the chance of an F as large; NaN without a predictor, and for n = p.
 
     Results that need n > p are NaN for n = p: standard_errors, intervals, covariance, rmse_dof, F, p.
     """
@@ -60,15 +58,11 @@ class LinearFit(ShownFields):
     p: float
 
 
-def linear_fit(
-    response: npt.ArrayLike, predictors: npt.ArrayLike, *, intercept: bool = True, confidence: float = 0.95
-) -> LinearFit:
+def linear_fit(response: npt.ArrayLike, predictors: npt.ArrayLike) -> LinearFit:
     """Fit response = b0 + b1 x1 + … + bk xk + error by least squares.
 
     response: Shape (n,).
     predictors: x, shape (n, k) or (n,), without a column of ones; (n, 0) fits the mean.
-    intercept: Whether b0 is fitted; it is then the first coefficient.
-    confidence: Confidence of the intervals.
     Raises ParameterError: if shapes do not fit or a value is not finite.
     Raises FitError: if n < p, or a predictor does not vary or follows from the others.
     Warns FitWarning: if the condition number of the centred and scaled predictors is above 1,000: the coefficients lose
@@ -76,8 +70,7 @@ def linear_fit(
 
     Notes
     -----
-    Columns are centred and scaled and factorised as QR; no normal equations. Without an intercept R², F and p stay NaN:
-    about zero they would answer another question under the same name. `nested_f_test` compares such models.
+    Columns are centred and scaled and factorised as QR; no normal equations.
 
     Examples
     --------
@@ -87,18 +80,16 @@ def linear_fit(
     >>> [round(float(b), 12) for b in fit.coefficients], round(fit.sse, 12)
     ([1.166666666667, 1.5], 0.166666666667)
     """
-    require_confidence(confidence)
     y = as_response(response)
     X = as_predictors(predictors, len(y))
-    columns = standardised(X, intercept=intercept)
+    columns = standardised(X, intercept=True)
     warn_if_ill_conditioned(columns.scaled)
     design = factorise(columns)
-    shifted, middle = centre(y) if intercept else (y, np.zeros(()))
+    shifted, middle = centre(y)
     coefficients, residuals = design.solve(shifted)
-    if intercept:
-        coefficients[0] += middle
-    r2, F, tail = _explained(shifted, residuals, len(coefficients)) if intercept else (float("nan"),) * 3
-    return LinearFit(**spread(coefficients, residuals, design, confidence), rank=len(coefficients), r2=r2, F=F, p=tail)
+    coefficients[0] += middle
+    r2, F, tail = _explained(shifted, residuals, len(coefficients))
+    return LinearFit(**spread(coefficients, residuals, design, CONFIDENCE), rank=len(coefficients), r2=r2, F=F, p=tail)
 
 
 def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[float, float, float]:
@@ -132,12 +123,11 @@ class VarianceShares(ShownFields):
     left: float
 
 
-def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike, *, confidence: float = 0.95) -> VarianceShares:
+def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike) -> VarianceShares:
     """First-order Sobol shares of independent inputs, as far as the output follows them in proportion.
 
     output: Shape (n,).
     inputs: Drawn independently of each other, shape (n, k), n ≥ k + 2; each varies.
-    confidence: Confidence of the intervals.
     Returns: b² Var(x)/Var(y) of the linear regression, minus the value that noise alone would give (the squared
         standard error instead of 0), and not below 0; intervals from those of b by Student's t. All 0 if the output
         does not vary.
@@ -160,7 +150,7 @@ def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike, *, confidence:
     if len(y) and np.all(y == y[0]):
         nothing = np.zeros(x.shape[1])
         return VarianceShares(nothing, np.zeros((x.shape[1], 2)), 0.0)
-    fit = linear_fit(y, x, confidence=confidence)
+    fit = linear_fit(y, x)
     scale = x.var(axis=0) / y.var()
     slope, error, ends = fit.coefficients[1:], fit.standard_errors[1:], fit.intervals[1:]
     low, high = np.sort(ends**2, axis=1).T
