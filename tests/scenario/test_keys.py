@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import Solver, keys, load_scenario, scenario_names, scenario_text
 from skisnow.scenario.identify_section import Prior, measured_of, prior_of
-from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS, free_key, free_keys, short_name
+from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS, free_key, free_keys
 from skisnow.scenario.schema import scenario_schema
 from skisnow.snow import SnowProperties
 from tests.coded import Coded, coded, raises
@@ -136,8 +136,8 @@ def test_with_and_without_section_and_unit(word: str, key: str) -> None:
         ("x_ms", coded("unknown_name", word="x_ms")),
         ("MASS", "unknown_name"),
         ("speeds", "unknown_name"),
-        ("dragarea", coded("unknown_name", similar="drag_area")),
-        ("sf", coded("unknown_name", similar="S_f")),
+        ("dragarea", coded("unknown_name", similar="drag_area_m2")),
+        ("sf", coded("unknown_name", word="sf")),
         ("step", coded("not_free", key="solver.step_ms")),
         ("inertia", coded("not_free", key="sledge.inertia_kg_m2")),
         ("ski.name", coded("not_free", key="ski.name")),
@@ -155,7 +155,7 @@ def test_where_nothing_is_near_all_are_reported() -> None:
         free_key("quark")
     told = str(refused.value).partition("Allowed: ")[2].removesuffix(".").split(", ")
     assert [free_key(word) for word in told] == list(FREE_KEYS)
-    assert told == [short_name(key) for key in FREE_KEYS]
+    assert told == [key.partition(".")[2] for key in FREE_KEYS]
 
 
 def test_a_key_of_one_run_may_stand_beside_that_of_another() -> None:

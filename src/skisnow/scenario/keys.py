@@ -181,7 +181,7 @@ def free_key(word: str) -> str:
             "not_free", key=meant[0], keys=list(FREE_KEYS)
         )
     raise ParameterError("{word!r} is not a key of a scenario. {allowed}").tag(
-        "unknown_name", word=word, allowed=suggest_and_list(word, map(short_name, FREE_KEYS))
+        "unknown_name", word=word, allowed=suggest_and_list(word, (key.partition(".")[2] for key in FREE_KEYS))
     )
 
 
