@@ -63,16 +63,12 @@ def test_simulator_itself_answers_through_the_command(capsys: Printed) -> None:
 
 
 @pytest.mark.usefixtures("replaced")
-def test_json_is_the_summary_alone(capsys: Printed) -> None:
+def test_json_is_the_summary_alone_and_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     found = answer(ASKED, capsys)
     assert found["outcome"] == "finished"
     assert found["run_length_m"] == pytest.approx(LENGTH, rel=1e-12)
     assert found["scenario"]["run"]["duration_s"] == 2.0
     assert "verification" not in found
-
-
-@pytest.mark.usefixtures("replaced")
-def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     assert main(["simulate", *ASKED]) == 0
     out, err = capsys.readouterr()
     told = {line[:20].strip(): line[20:].strip() for line in out.splitlines()[1:] if line}

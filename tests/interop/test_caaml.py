@@ -46,11 +46,8 @@ def same(first: SnowPit, second: SnowPit) -> bool:
     return together and replace(first, forces=()) == replace(second, forces=())
 
 
-def test_a_pit_comes_back_as_it_was(tmp_path: Path) -> None:
+def test_a_pit_comes_back_as_it_was_and_a_bare_pit_comes_back_as_it_was(tmp_path: Path) -> None:
     assert same(read_caaml(write_caaml(full_pit(), tmp_path / "pit.caaml")), full_pit())
-
-
-def test_a_bare_pit_comes_back_as_it_was(tmp_path: Path) -> None:
     bare = SnowPit(name="x", time="2026-02-03", observer="B")
     assert same(read_caaml(write_caaml(bare, tmp_path / "pit.xml")), bare)
 

@@ -51,7 +51,7 @@ time\tknee_angle_r\tpelvis_tx
 """
 
 
-def test_a_table_is_read_as_it_was_written(tmp_path: Path) -> None:
+def test_a_table_is_read_as_it_was_written_and_a_table_of_another_program(tmp_path: Path) -> None:
     columns = {"knee_angle_r": np.array([1 / 3, -1e-17, 2e300, 0.1]), "force_vx": np.zeros(4)}
     for ending, degrees in ((".mot", True), (".sto", False)):
         table = MotionTable(TIME, columns, degrees, "one run", {"DataType": "double"})
@@ -61,9 +61,6 @@ def test_a_table_is_read_as_it_was_written(tmp_path: Path) -> None:
         assert np.array_equal(found.time, TIME)
         assert list(found.columns) == list(columns)
         assert all(np.array_equal(found.columns[name], columns[name]) for name in columns)
-
-
-def test_a_table_of_another_program(tmp_path: Path) -> None:
     (tmp_path / "a.mot").write_text(MOT, encoding="utf-8")
     found = read_motion(tmp_path / "a.mot")
     assert (found.name, found.in_degrees) == ("Coordinates", False)

@@ -62,7 +62,7 @@ def test_friction_over_the_place_leaves_the_snow_as_it_is(tmp_path: Path) -> Non
     assert repr(present(given.contact.snow_map)).startswith("<SnowMap mu_share 0.5")
 
 
-def test_means_stand_for_the_snow(tmp_path: Path) -> None:
+def test_means_stand_for_the_snow_and_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
     path = written(tmp_path, "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n")
     given = scenario_file("carved-46m", changes={"snow.map_file": str(path)})
     snow = given.scenario.contact.snow
@@ -73,9 +73,6 @@ def test_means_stand_for_the_snow(tmp_path: Path) -> None:
     assert given.values["snow.H_V_N_per_mm3"] == pytest.approx(snow.snow_hardness / N_PER_MM3)
     assert given.values["snow.map_file"] == str(path)
     assert path in given.files
-
-
-def test_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
     path = written(tmp_path, OVER)
     contact = load_scenario("carved-46m", changes={"snow.map_file": str(path)}).contact
     assert contact.snow.snow_hardness == 0.2 * N_PER_MM3
@@ -87,16 +84,13 @@ def test_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
     assert named.with_(snow="race-piste").contact.snow_map is None
 
 
-def test_hardness_of_the_map_comes_before_that_of_a_named_snow(tmp_path: Path) -> None:
+def test_hardness_of_the_map_comes_before_that_of_a_named_snow_and_hardness_where_it_matters(tmp_path: Path) -> None:
     path = written(tmp_path, "x_m,H_V_N_per_mm3\n0,0.1\n10,0.4\n")
     snow = load_scenario(
         "carved-46m", changes={"snow.map_file": str(path), "snow.published": "race-piste"}
     ).contact.snow
     assert snow.snow_hardness == read_snow_map(path).mean_hardness
     assert snow.failure_shear_stress == published_snow("race-piste").failure_shear_stress
-
-
-def test_hardness_where_it_matters(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
     changed = {"snow.map_file": str(path), "start.x_m": 10}
     soft, hard = (

@@ -86,7 +86,7 @@ def test_every_number_reaches_the_ski_in_si(ski_file: Written) -> None:
     assert ski.base_height[-1] - low == pytest.approx(0.005, abs=1e-12)
 
 
-def test_rocker_and_stiffness_stations_of_a_file(ski_file: Written) -> None:
+def test_rocker_and_stiffness_stations_of_a_file_and_one_stiffness_holds_everywhere(ski_file: Written) -> None:
     rocker = {
         "tip_rocker_length_mm": 200,
         "tip_rocker_height_mm": 6,
@@ -97,9 +97,6 @@ def test_rocker_and_stiffness_stations_of_a_file(ski_file: Written) -> None:
     low, end = ski.at([0.698 - 0.2, 0.698]).base_height
     assert end - low == pytest.approx(0.006, abs=1e-6)  # interpolated linearly between stations
     assert float(ski.at(0.3).bending_stiffness) == pytest.approx(250.0, abs=0.01)
-
-
-def test_one_stiffness_holds_everywhere(ski_file: Written) -> None:
     assert np.all(read_ski(ski_file(EI_N_m2=[300])).bending_stiffness == 300.0)
 
 

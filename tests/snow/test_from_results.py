@@ -63,22 +63,19 @@ def test_intervals_cover_in_19_of_20(tmp_path: Path) -> None:
     assert held / 400 == pytest.approx([0.95, 0.95], abs=0.033)
 
 
-def test_interval_agrees_with_scipy(tmp_path: Path) -> None:
+def test_interval_agrees_with_scipy_and_one_experiment_has_no_interval_and_no_shear_no_stress(tmp_path: Path) -> None:
     values = [0.11, 0.23, 0.19, 0.35]
     snow = snow_from_results(results_file(tmp_path, [penetration(v) for v in values], []))
     logs = np.log(values)
     expected = stats.t.interval(0.95, 3, loc=logs.mean(), scale=stats.sem(logs))
     assert snow.snow_hardness_interval == pytest.approx(np.exp(expected) * 1e9)
-
-
-def test_one_experiment_has_no_interval_and_no_shear_no_stress(tmp_path: Path) -> None:
     snow = snow_from_results(results_file(tmp_path, [penetration(0.2)], []))
     assert snow.snow_hardness == pytest.approx(0.2e9)
     assert snow.snow_hardness_interval is None
     assert snow.failure_shear_stress is None and snow.failure_shear_stress_interval is None
 
 
-def test_only_used_rows_of_the_site_count(tmp_path: Path) -> None:
+def test_only_used_rows_of_the_site_count_and_a_site_that_is_not_there(tmp_path: Path) -> None:
     rows = [penetration(0.2), penetration(0.9, used=False), penetration(None), penetration(0.5, "B")]
     path = results_file(tmp_path, rows, [shear(0.1), shear(0.4, used=False), shear(None), shear(0.3, "B")])
     snow = snow_from_results(path, site="A")
@@ -88,9 +85,6 @@ def test_only_used_rows_of_the_site_count(tmp_path: Path) -> None:
     both = snow_from_results(path)
     assert both.snow_hardness == pytest.approx(math.sqrt(0.1) * 1e9)
     assert both.failure_shear_stress == pytest.approx(0.2e6)
-
-
-def test_a_site_that_is_not_there(tmp_path: Path) -> None:
     path = results_file(tmp_path, [penetration(0.2, "B"), penetration(0.2, "A")], [])
     with raises(ParameterError, "no_data", site="C"):
         snow_from_results(path, site="C")

@@ -71,14 +71,11 @@ def test_the_same_row_is_not_taken_twice(place: Path) -> None:
     kept.close()
 
 
-def test_rows_of_another_batch_are_rejected(place: Path) -> None:
+def test_rows_of_another_batch_are_rejected_and_two_runs_at_once_are_rejected(place: Path) -> None:
     KeptRows.opened(place, "f").close()
     with raises(ParameterError, "another_study"):
         KeptRows.opened(place, "g")
     KeptRows.opened(place, "f").close()
-
-
-def test_two_runs_at_once_are_rejected(place: Path) -> None:
     first = KeptRows.opened(place, "f")
     for _ in range(2):
         with raises(OutputError, "in_use"):

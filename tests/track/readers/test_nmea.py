@@ -194,15 +194,12 @@ def test_row_of_a_message_with_carriage_returns(tmp_path: Path) -> None:
     assert "a.nmea, row 3" in refused(tmp_path, b"\r".join(lines), "a.nmea")
 
 
-def test_without_checksums(tmp_path: Path) -> None:
+def test_without_checksums_and_checksum_that_others_have_is_required(tmp_path: Path) -> None:
     bare = [line.split(b"*")[0] + b"\r\n" for line in both(SECONDS)]
     track = read(tmp_path, b"".join(bare), "a.nmea")
     assert (len(track), track.left_out) == (8, {})
     assert track.place[0].tolist() == pytest.approx([0.0, 0.0, 0.0])
-
-
-def test_checksum_that_others_have_is_required(tmp_path: Path) -> None:
-    """A sentence without one may be cut: of 1452.3 m a cut leaves 1 m."""
+    # A sentence without one may be cut: of 1452.3 m a cut leaves 1 m.
     cut = gga("155115.00").split(b"1452.3")[0] + b"1\r\n"
     track = read(tmp_path, gga() + cut + gga("155116.00"), "a.nmea")
     assert len(track) == 2
@@ -306,13 +303,10 @@ def test_cell_that_is_not_finite(tmp_path: Path, word: str) -> None:
     assert track.usable.all()
 
 
-def test_sentences_between_frames_without_places(tmp_path: Path) -> None:
+def test_sentences_between_frames_without_places_and_frames_with_places_come_before_sentences(tmp_path: Path) -> None:
     """RXM-RAWX, with bytes that are `$` and the mark of NAV-PVT."""
     raw = ubx_frame(b"\x02\x15", b"\xb5\x62\x01\x07" + bytes(range(36, 60)))
     track = read(tmp_path, b"".join(raw + line for line in both(SECONDS)), "a.ubx")
     assert (len(track), track.left_out) == (8, {})
-
-
-def test_frames_with_places_come_before_sentences(tmp_path: Path) -> None:
     track = read(tmp_path, nav_pvt(second=1) + b"".join(both(SECONDS)) + nav_pvt(second=2), "a.ubx")
     assert (len(track), list(track.left_out.values())) == (2, [16])

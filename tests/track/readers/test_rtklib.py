@@ -59,7 +59,7 @@ def test_carrier_phase(tmp_path: Path) -> None:
     assert track.flagged == {"float_solution": 2, "code_solution": 3}
 
 
-def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
+def test_standard_deviation_of_the_speed_and_velocities(tmp_path: Path) -> None:
     """Along the velocity (0.6 north, -0.8 east), with the covariance as RTKLIB writes it: its root with its sign."""
     names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
     lines = LLH.splitlines()
@@ -69,10 +69,6 @@ def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
     np.testing.assert_allclose(present(track.speed_sd), [wanted, 0.5], rtol=1e-9)
     unknown = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, f"{lines[3]} 3 -4 0 9e9 9e9 9e9 0 0 0"]), "b.pos")
     assert np.isnan(present(unknown.speed_sd)).all()
-
-
-def test_velocities(tmp_path: Path) -> None:
-    names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
     lines = LLH.splitlines()
     text = "\n".join([*lines[:2], lines[2] + names, *(f"{line} 3 -4 -1.2 .1 .1 .1 0 0 0" for line in lines[3:])])
     track = read(tmp_path, text, "a.pos")
@@ -95,7 +91,7 @@ def test_a_week_has_604800_seconds_and_there_are_10000_weeks(tmp_path: Path, whe
     assert "week and seconds" in message
 
 
-def test_degrees_minutes_seconds(tmp_path: Path) -> None:
+def test_degrees_minutes_seconds_and_earth_centred_and_earth_centred_at_the_date_line(tmp_path: Path) -> None:
     head = COLUMNS.replace("(deg)", "(d'\")")
     row = "2022/12/27 15:51:14.000   -0 30 36.00000  -71 15 18.00000  1500.0  "
     track = read(tmp_path, f"%  JST  {head}\n{row}{TAIL}\n", "a.pos")
@@ -103,20 +99,14 @@ def test_degrees_minutes_seconds(tmp_path: Path) -> None:
     assert present(track.origin).longitude_deg == pytest.approx(-71.255, abs=1e-12)
     assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=timezone(timedelta(hours=9)))
     assert track.time_scale == "JST"
-
-
-def test_earth_centred(tmp_path: Path) -> None:
-    """On the equator at 90° east: east is -X, north is Z, up is Y; and so are deviations and velocities."""
+    # On the equator at 90° east: east is -X, north is Z, up is Y; and so are deviations and velocities.
     tail = "1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 -0.5 2.5 .1 .1 .1 0 0 0"
     rows = f"2022/12/27 15:51:14.000 0.0 6378137.0 0.0 {tail}\n2022/12/27 15:51:15.000 -3.0 6378139.0 7.0 {tail}\n"
     track = read(tmp_path, EARTH + rows, "a.pos")
     np.testing.assert_allclose(track.place, np.array([[0.0, 0.0, 0.0], [3.0, 7.0, 2.0]]), atol=1e-7)
     np.testing.assert_allclose(present(track.place_sd), [[0.01, 0.03, 0.02]] * 2, rtol=1e-6)
     np.testing.assert_allclose(present(track.velocity), [[-1.5, 2.5, -0.5]] * 2, atol=1e-5)
-
-
-def test_earth_centred_at_the_date_line(tmp_path: Path) -> None:
-    """There east is -Y, north is Z, up is -X."""
+    # There east is -Y, north is Z, up is -X.
     tail = "1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 -0.5 2.5 .1 .1 .1 0 0 0"
     track = read(tmp_path, f"{EARTH}2022/12/27 15:51:14.000 -6378137.0 0.0 0.0 {tail}\n", "a.pos")
     np.testing.assert_allclose(present(track.place_sd), [[0.02, 0.03, 0.01]], rtol=1e-12)
