@@ -227,12 +227,27 @@ def followed(line: RecedingLine, place: tuple[float, float], course: float, spee
 
 
 def test_who_follows_the_plan_passes_the_apexes_from_beside_the_line_too() -> None:
-    """The second one; at the first there is too little way left for more than half of it."""
+    """Of 0.3 m half is left at the first apex, where there is too little way for more, and a tenth at the second."""
+    course, ends = math.atan(1.9 * math.pi / 13.0), []
     for beside in (0.0, 0.3, -0.3):
-        path = followed(RecedingLine(HalfWaves(APEXES), APEXES), (0.0, beside), math.atan(1.9 * math.pi / 13.0))
-        first, second = (float(np.interp(x, path[:, 0], path[:, 1]) - y) for x, y in APEXES[1:3])
-        assert abs(first) < max(0.08, 0.6 * abs(beside))
-        assert second == pytest.approx(0.0, abs=0.08)
+        path = followed(RecedingLine(HalfWaves(APEXES), APEXES), (0.0, beside), course)
+        ends.append([float(np.interp(x, path[:, 0], path[:, 1]) - y) for x, y in APEXES[1:3]])
+    assert ends[0] == pytest.approx([0.0, 0.0], abs=0.08)
+    for end in ends[1:]:
+        assert np.all(np.abs(np.subtract(end, ends[0])) < [0.15, 0.03])
+
+
+def test_the_first_path_swings_to_the_other_side_but_not_where_it_bows_there_by_itself() -> None:
+    course, gravity = math.atan(1.9 * math.pi / 13.0), Gravity(9.5, 0.0)
+    forces = [
+        RecedingLine(HalfWaves(APEXES), APEXES).ahead(saw(place=(0.0, beside), speed=7.0, course=course), gravity).force
+        for beside in (0.0, -0.5)
+    ]
+    (now, later), (bows, bows_later) = (force[[0, 3]] for force in forces)
+    assert now > 1.5
+    assert later < 0.0
+    assert bows < 0.5
+    assert bows_later > 1.0
 
 
 def test_the_line_goes_on_behind_its_last_apex_from_side_to_side() -> None:
@@ -314,6 +329,17 @@ def test_the_grip_is_learnt_where_skis_slide() -> None:
         for _ in range(100):
             control._learn(saw(slip=slip, across=1.2 * expected, edge=(0.1, 0.1)), skier.posture)
         assert control.grip == pytest.approx(grip, abs=1e-3)
+
+
+def test_no_more_force_is_planned_than_edges_of_34_degrees_hold_with_the_learnt_grip() -> None:
+    skier = BalancedSkier(replace(TURNS, skier=Skier(brakes_to=6.0)))
+    control: Any = skier.controller
+    loads = control.body.mass * control.gravity.normal * np.array([0.65, 0.35])
+    for grip in (0.3, 0.2):
+        control.grip = grip
+        control._look_ahead(saw(time=1.0, speed=20.0, course=0.5))
+        held = grip * sum(control.snow.force(math.radians(34.0), load) for load in loads)
+        assert np.abs(control._planned.force).max() == pytest.approx(held / control.body.mass)
 
 
 @pytest.mark.parametrize("course", [0.0, 0.5])

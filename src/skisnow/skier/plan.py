@@ -28,6 +28,9 @@ TABLE_STEP: Final = 0.05
 """Step (m) of the table of a line (modelling assumption)."""
 JOINS: Final = 0.32
 """Share of the way between two apexes that is left at least to join the line (found by trial)."""
+SWING, MOST_SWING = 0.3, 0.8
+"""By how much the first path bends to the other side where it would bend to the turn's side at once, and at most over
+its way aside: there the snow turns skis and body together, before the skis pivot (found by trial)."""
 SETTLES: Final = 2.5
 """Rate (1/s) at which a side-slip comes to its speed, and its greatest deceleration (m/s²) (modelling assumption)."""
 STANDS: Final = 0.15
@@ -157,14 +160,16 @@ class RecedingLine:
     apexes: x, y (m) of its start and apexes, x rising.
 
     The path to the apex is a polynomial of fifth order with place, course and planned curvature of now, and those of
-    the line at the apex: the planned curvature is continuous, and nothing has to lead back to the line.
+    the line at the apex: the planned curvature is continuous, and nothing has to lead back to the line. The first one
+    swings to the other side, as if it came from a turn.
     """
 
     def __init__(self, line: Line, apexes: Sequence[tuple[float, float]]) -> None:
         self.apexes = with_run_out(apexes)
         end = apexes[-1][0]
         last = self.apexes[-1][0]
-        self._first, self._quintic = apexes[0][0], (0.0, 1.0, [0.0] * 6)
+        self._first = apexes[0][0]
+        self._quintic: tuple[float, float, list[float]] | None = None  # its start and way (m), coefficients (m)
         x = np.arange(apexes[0][0], last + 15.0, TABLE_STEP)
         beyond = HalfWaves(self.apexes[len(apexes) - 1 :])
         rows = np.array([line.at(float(each)) if each < end else beyond.at(float(each)) for each in x])
@@ -190,6 +195,7 @@ class RecedingLine:
         """Along the path and the line at the present speed."""
         x, y = seen.place
         until = self._join(x, y, max(-STEEPEST_COURSE, min(STEEPEST_COURSE, seen.course)))
+        assert self._quintic is not None
         _, way, (_, c1, c2, c3, c4, c5) = self._quintic
         speed = max(seen.speed, SLOWEST)
         step, square, down = STEP * speed, speed**2, gravity.down
@@ -210,16 +216,20 @@ class RecedingLine:
 
     def _join(self, x: float, y: float, course: float) -> float:
         """Lay the path to the apex that is joined; gives its x (m)."""
-        first, way, before = self._quintic
-        u = (x - first) / way
-        bend = (2 * before[2] + 6 * before[3] * u + 12 * before[4] * u**2 + 20 * before[5] * u**3) / way**2
         place, aside = self._next_apex(x)
         i = min(max(round((place - self._first) / TABLE_STEP), 0), len(self._bend) - 1)
         way = place - x
-        a0, a1, a2 = y, math.tan(course) * way, 0.5 * bend * way**2
+        a0, a1, end = y, math.tan(course) * way, self._bend_at(i) * way**2
+        if self._quintic is None:
+            swing = SWING * (7.0 * a1 - 10.0 * (aside - a0) - 0.5 * end)
+            a2 = max(0.0, min(swing, MOST_SWING * a1)) if a1 > 0.0 else min(0.0, max(swing, MOST_SWING * a1))
+        else:
+            first, before, c = self._quintic
+            u = (x - first) / before
+            a2 = (c[2] + 3 * c[3] * u + 6 * c[4] * u**2 + 10 * c[5] * u**3) * (way / before) ** 2
         d0 = aside - a0 - a1 - a2
         d1 = -a1 - 2.0 * a2
-        d2 = self._bend_at(i) * way**2 - 2.0 * a2
+        d2 = end - 2.0 * a2
         rest = (10 * d0 - 4 * d1 + 0.5 * d2, -15 * d0 + 7 * d1 - d2, 6 * d0 - 3 * d1 + 0.5 * d2)
         self._quintic = (x, way, [a0, a1, a2, *rest])
         return place
