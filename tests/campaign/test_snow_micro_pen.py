@@ -38,7 +38,6 @@ def test_a_recording_built_by_hand(tmp_path: Path) -> None:
     assert profile.speed == pytest.approx(0.020)
     assert profile.clock == datetime(2019, 3, 2, 11, 30, 59, tzinfo=UTC)
     assert profile.date_in_file_name == date(2019, 3, 2)
-    assert not profile.clock_is_one_rollover_behind
 
 
 @pytest.mark.parametrize(
@@ -105,7 +104,6 @@ def test_real_clock_is_1024_weeks_behind_the_file_name(name: str) -> None:
     profile = read_snow_micro_pen(recording(name))
     assert present(profile.clock).date() == date(2000, 6, 24)
     assert profile.date_in_file_name == profile.recorded_on == date(2020, 2, 8)
-    assert profile.clock_is_one_rollover_behind
 
 
 @pytest.mark.parametrize("name", [LONG, SHORT])

@@ -5,7 +5,6 @@ import struct
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -272,11 +271,8 @@ def test_a_name_with_signs_of_xml_comes_back() -> None:
 
 def test_impossible_input_is_rejected(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ski = read_ski("carver")
-    changes: tuple[dict[str, Any], ...] = ({"segments": 2}, {"clamp_length": 3.0}, {"damping": -1.0})
-    for change in changes:
-        with raises(ParameterError, "out_of_range") as caught:
-            ski_mjcf(ski, **change)
-        assert min(change) in str(caught.value)
+    with raises(ParameterError, "out_of_range", name="segments"):
+        ski_mjcf(ski, segments=2)
     assert main(["export", "mjcf", "carver", "--out", str(tmp_path / "ski.txt")]) == 1
     assert ".xml" in capsys.readouterr().err
 

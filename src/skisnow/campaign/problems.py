@@ -9,7 +9,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Final, Literal, TypeAlias
 
-from .._support.messages import Message, joined
+from .._support.messages import Message, joined, template
 
 Severity: TypeAlias = Literal["error", "warning", "flag"]
 
@@ -182,104 +182,54 @@ ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})
 """A campaign may choose which flags exclude, but not these: the observers took the test back, or there is no value."""
 
 
+_FLAG_NAMES: Final = (
+    template("cancelled"), template("too few loads"), template("loads not rising"), template("depth shrinks"),
+    template("zero depth"), template("beyond tool"), template("below resolution"), template("layered"),
+    template("creeps"), template("unloading not falling"), template("unloading sinks"), template("rebound unresolved"),
+    template("hardness outlier"),
+)  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True)
 class QualityFlag:
-    """A quality flag: code, name in lists, the sentence that explains it, and whether it excludes by default."""
+    """A quality flag: code, the sentence that explains it, and whether it excludes by default."""
 
     code: str
-    name: str
     sentence: str
     excludes_by_default: bool = False
 
+    @property
+    def name(self) -> Message:
+        """Name in lists, one of `_FLAG_NAMES`."""
+        return Message(self.code.replace("_", " "))
+
 
 _ALL: Final = (
-    QualityFlag(
-        "cancelled",
-        Message("cancelled"),
-        Message("The experiment was cancelled by an entry in the column status."),
-        True,
-    ),
-    QualityFlag(
-        "too_few_loads",
-        Message("too few loads"),
-        Message("The series has fewer than {fewest_loads} load steps.", fewest_loads=FEWEST_LOADS),
-        True,
-    ),
-    QualityFlag(
-        "loads_not_rising",
-        Message("loads not rising"),
-        Message("A load of the series is not above the one before it."),
-        True,
-    ),
-    QualityFlag(
-        "depth_shrinks",
-        Message("depth shrinks"),
-        Message("A depth of the series is below the one before it, although the load was raised."),
-        True,
-    ),
-    QualityFlag(
-        "zero_depth",
-        Message("zero depth"),
-        Message("The depth is zero (of a series: at its largest load), so that no parameter follows."),
-        True,
-    ),
-    QualityFlag(
-        "beyond_tool",
-        Message("beyond tool"),
-        Message("The tool went deeper than the geometry that its area and volume are computed with."),
-    ),
-    QualityFlag(
-        "below_resolution",
-        Message("below resolution"),
-        Message(
-            "The depth (of a series: at its largest load) is below {resolutions:g} steps of the gauge.",
-            resolutions=RESOLUTIONS,
-        ),
-    ),
-    QualityFlag(
-        "layered",
-        Message("layered"),
-        Message(
-            "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre."
-        ),
-    ),
-    QualityFlag(
-        "creeps",
-        Message("creeps"),
-        Message(
-            "Under one load the depth grew by more than {creep_steps:g} steps of the gauge and {creep_share:.0%} of "
-            "it.",
-            creep_steps=CREEP_STEPS,
-            creep_share=CREEP_SHARE,
-        ),
-    ),
-    QualityFlag(
-        "unloading_not_falling",
-        Message("unloading not falling"),
-        Message("A load of the unloading is not below the one before it, so that no unloading ratio follows."),
-    ),
-    QualityFlag(
-        "unloading_sinks",
-        Message("unloading sinks"),
-        Message("The tool went deeper while the discs were taken off: the snow was still giving way."),
-    ),
-    QualityFlag(
-        "rebound_unresolved",
-        Message("rebound unresolved"),
-        Message(
-            "The tool came back by too little to measure how steep the unloading is: the ratio is only known from "
-            "below."
-        ),
-    ),
-    QualityFlag(
-        "hardness_outlier",
-        Message("hardness outlier"),
-        Message(
-            "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's "
-            "median."
-        ),
-    ),
-)
+    QualityFlag("cancelled", Message("The experiment was cancelled by an entry in the column status."), True),
+    QualityFlag("too_few_loads", Message("The series has fewer than {fewest_loads} load steps.",
+                                         fewest_loads=FEWEST_LOADS), True),
+    QualityFlag("loads_not_rising", Message("A load of the series is not above the one before it."), True),
+    QualityFlag("depth_shrinks", Message("A depth of the series is below the one before it, although the load was "
+                                         "raised."), True),
+    QualityFlag("zero_depth", Message("The depth is zero (of a series: at its largest load), so that no parameter "
+                                      "follows."), True),
+    QualityFlag("beyond_tool", Message("The tool went deeper than the geometry that its area and volume are computed "
+                                       "with.")),
+    QualityFlag("below_resolution", Message("The depth (of a series: at its largest load) is below {resolutions:g} "
+                                            "steps of the gauge.", resolutions=RESOLUTIONS)),
+    QualityFlag("layered", Message("The hardness of the snow changes with depth, or the depth zero is off by several "
+                                   "tenths of a millimetre.")),
+    QualityFlag("creeps", Message("Under one load the depth grew by more than {creep_steps:g} steps of the gauge and "
+                                  "{creep_share:.0%} of it.", creep_steps=CREEP_STEPS, creep_share=CREEP_SHARE)),
+    QualityFlag("unloading_not_falling", Message("A load of the unloading is not below the one before it, so that no "
+                                                 "unloading ratio follows.")),
+    QualityFlag("unloading_sinks", Message("The tool went deeper while the discs were taken off: the snow was still "
+                                           "giving way.")),
+    QualityFlag("rebound_unresolved", Message("The tool came back by too little to measure how steep the unloading "
+                                              "is: the ratio is only known from below.")),
+    QualityFlag("hardness_outlier", Message("The logarithm of the hardness is further than 3.5 scaled median absolute "
+                                            "deviations from its site's median.")),
+)  # fmt: skip
 QUALITY_FLAGS: Final[Mapping[str, QualityFlag]] = MappingProxyType({flag.code: flag for flag in _ALL})
 """Every flag by its code, in the order in which they are listed."""
 

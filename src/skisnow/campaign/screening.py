@@ -161,10 +161,6 @@ def find_implausible_unloading(campaign: Campaign, tests: PenetrationTests) -> d
 
 _UNFLAGGED_STATUS = Message("a blank status")
 _UNFLAGGED_ZERO = Message("a depth above 0 mm")
-_UNFLAGGED_REBOUND = Message(
-    "a rebound that is large compared with the step of the gauge and the scatter of the readings"
-)
-_UNFLAGGED_OUTLIER = Message("a logarithm of the hardness nearer to its site's median")
 _OF_UNLOADING = ("unloading_not_falling", "unloading_sinks", "rebound_unresolved")
 
 
@@ -241,7 +237,7 @@ _Cause: TypeAlias = tuple[int, str | None, str | None, str]
 
 
 class _FlaggedReadings:
-    """Problems of penetration experiments; the method ``_cause_of_CODE`` finds the reading that causes a flag."""
+    """Problems of penetration experiments, each at the reading that causes a flag."""
 
     def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
         self._campaign = campaign
@@ -251,85 +247,81 @@ class _FlaggedReadings:
 
     def problem(self, index: int, code: str) -> Problem:
         """One flag as a problem."""
-        cause = self._causes_without_search(index).get(code) or getattr(self, f"_cause_of_{code}")(index)
-        reading, *about = cause
-        row = int((self._unloading if code in _OF_UNLOADING else self._tests).row[reading])
-        return _flag(self._campaign, code, PENETRATION.file, row, self._tests.experiment[index], *about)
+        in_unloading = code in _OF_UNLOADING
+        cause = self._unloading_cause(index, code) if in_unloading else self._cause(index, code)
+        reading, column, value, allowed = cause
+        row = int((self._unloading if in_unloading else self._tests).row[reading])
+        return _flag(self._campaign, code, PENETRATION.file, row, self._tests.experiment[index], column, value, allowed)
 
-    def _causes_without_search(self, index: int) -> dict[str, _Cause]:
-        """Causes at the first reading, or at the one under the largest load."""
-        first, end = self._tests.first[index : index + 2].tolist()
-        largest = int(self._largest[index])
-        depth = self._depth(largest)
-        enough = Message("at least {count} load steps", count=FEWEST_LOADS)
-        return {
-            "cancelled": (first, "status", self._tests.cancelled[index], _UNFLAGGED_STATUS),
-            "too_few_loads": (first, "load_N", str(end - first), enough),
-            "zero_depth": (largest, "depth_mm", depth, _UNFLAGGED_ZERO),
-            "below_resolution": (largest, "depth_mm", depth, _resolution_limit(self._campaign)),
-            "layered": (largest, "depth_mm", None, Message("depths that grow with the load as F = H_V V has it")),
-            "hardness_outlier": (largest, None, None, _UNFLAGGED_OUTLIER),
-        }
+    def _cause(self, index: int, code: str) -> _Cause:
+        tests, largest = self._tests, int(self._largest[index])
+        first, end = tests.first[index : index + 2].tolist()
+        load, depth = tests.load[first:end], tests.penetration_depth[first:end]
+        reading, column, value = largest, "depth_mm", self._depth(largest)
+        match code:
+            case "cancelled":
+                return first, "status", tests.cancelled[index], _UNFLAGGED_STATUS
+            case "too_few_loads":
+                reading, column, value = first, "load_N", str(end - first)
+                allowed = Message("at least {count} load steps", count=FEWEST_LOADS)
+            case "zero_depth":
+                allowed = _UNFLAGGED_ZERO
+            case "below_resolution":
+                allowed = _resolution_limit(self._campaign)
+            case "layered":
+                allowed = Message("depths that grow with the load as F = H_V V has it")
+                return reading, column, None, allowed
+            case "loads_not_rising":
+                reading = first + 1 + int(np.flatnonzero(np.diff(load) <= 0)[0])
+                column, value = "load_N", _number(tests.load[reading])
+                before = tests.load[reading - 1]
+                allowed = Message("more than the {load:.10g} N of the reading before", load=before)
+            case "depth_shrinks":
+                reading = first + 1 + int(np.flatnonzero(np.diff(depth) < 0)[0])
+                value = self._depth(reading)
+                allowed = Message("at least the {depth} mm of the reading before", depth=self._depth(reading - 1))
+            case "beyond_tool":
+                reading = first + int(np.argmax(depth))
+                value = self._depth(reading)
+                allowed = Message(
+                    "at most {limit:.10g} mm for the tool {tool!r} at this edge angle",
+                    limit=self._limit[index] / MM,
+                    tool=tests.tool[index],
+                )
+            case "creeps":
+                assert tests.depth_after is not None
+                reading = first + int(np.flatnonzero(find_creep(self._campaign, tests)[first:end])[0])
+                column, value = "depth_after_mm", _number(tests.depth_after[reading] / MM)
+                allowed = Message(
+                    "at most {creep_steps:g} steps of the gauge or {creep_share:.0%} more than {depth} mm",
+                    creep_steps=CREEP_STEPS,
+                    creep_share=CREEP_SHARE,
+                    depth=self._depth(reading),
+                )
+            case _:  # hardness_outlier
+                return reading, None, None, Message("a logarithm of the hardness nearer to its site's median")
+        return reading, column, value, allowed
+
+    def _unloading_cause(self, index: int, code: str) -> _Cause:
+        unloading = self._unloading
+        if code == "rebound_unresolved":
+            allowed = Message(
+                "a rebound that is large compared with the step of the gauge and the scatter of the readings"
+            )
+            return int(unloading.first[index + 1]) - 1, "depth_mm", None, allowed
+        own = unloading.series_of_reading == index
+        reading = int(np.flatnonzero(find_implausible_unloading(self._campaign, self._tests)[code] & own)[0])
+        if code == "unloading_not_falling":
+            allowed = Message("less than the load of the reading before")
+            return reading, "load_N", _number(unloading.load[reading]), allowed
+        allowed = Message("at most the depth of the reading before and one step of the gauge")
+        return reading, "depth_mm", _number(unloading.penetration_depth[reading] / MM), allowed
 
     def _depth(self, reading: int) -> str:
         """Depth in mm, without the unit."""
         return _number(self._tests.penetration_depth[reading] / MM)
 
-    def _cause_of_loads_not_rising(self, index: int) -> _Cause:
-        load = self._tests.series(index).load
-        step = int(np.flatnonzero(np.diff(load) <= 0)[0])
-        reading = int(self._tests.first[index]) + step + 1
-        allowed = Message("more than the {load:.10g} N of the reading before", load=load[step])
-        return reading, "load_N", _number(load[step + 1]), allowed
-
-    def _cause_of_depth_shrinks(self, index: int) -> _Cause:
-        step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
-        before = int(self._tests.first[index]) + step
-        allowed = Message("at least the {depth} mm of the reading before", depth=self._depth(before))
-        return before + 1, "depth_mm", self._depth(before + 1), allowed
-
-    def _cause_of_beyond_tool(self, index: int) -> _Cause:
-        series = self._tests.series(index)
-        reading = int(self._tests.first[index]) + int(np.argmax(series.penetration_depth))
-        allowed = Message(
-            "at most {limit:.10g} mm for the tool {tool!r} at this edge angle",
-            limit=self._limit[index] / MM,
-            tool=series.tool,
-        )
-        return reading, "depth_mm", self._depth(reading), allowed
-
-    def _cause_of_creeps(self, index: int) -> _Cause:
-        first, end = self._tests.first[index : index + 2].tolist()
-        reading = first + int(np.flatnonzero(find_creep(self._campaign, self._tests)[first:end])[0])
-        assert self._tests.depth_after is not None
-        value = _number(self._tests.depth_after[reading] / MM)
-        allowed = Message(
-            "at most {creep_steps:g} steps of the gauge or {creep_share:.0%} more than {depth} mm",
-            creep_steps=CREEP_STEPS,
-            creep_share=CREEP_SHARE,
-            depth=self._depth(reading),
-        )
-        return reading, "depth_after_mm", value, allowed
-
-    def _cause_of_unloading_not_falling(self, index: int) -> _Cause:
-        reading = self._first_wrong(index, "unloading_not_falling")
-        allowed = Message("less than the load of the reading before")
-        return reading, "load_N", _number(self._unloading.load[reading]), allowed
-
-    def _cause_of_unloading_sinks(self, index: int) -> _Cause:
-        reading = self._first_wrong(index, "unloading_sinks")
-        depth = _number(self._unloading.penetration_depth[reading] / MM)
-        allowed = Message("at most the depth of the reading before and one step of the gauge")
-        return reading, "depth_mm", depth, allowed
-
-    def _cause_of_rebound_unresolved(self, index: int) -> _Cause:
-        return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNFLAGGED_REBOUND
-
     @property
     def _unloading(self) -> UnloadingReadings:
         assert self._tests.unloading is not None
         return self._tests.unloading
-
-    def _first_wrong(self, index: int, code: str) -> int:
-        own = self._unloading.series_of_reading == index
-        return int(np.flatnonzero(find_implausible_unloading(self._campaign, self._tests)[code] & own)[0])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import struct
 from dataclasses import dataclass, field
-from datetime import UTC, date, datetime, timedelta
+from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
@@ -29,7 +29,6 @@ MOST_BYTES: Final = 1 << 26
 _SAMPLE_BYTES: Final = 2
 _NO_HEIGHT_CM: Final = 99999.0
 _MICROMETRE: Final = 1e-6
-_WEEKS_OF_GPS_COUNTER: Final = timedelta(weeks=1024)
 
 # name, offset in bytes, format for struct
 _FIELDS: Final = (
@@ -121,17 +120,6 @@ class SnowMicroPenProfile:
     def recorded_on(self) -> date | None:
         """Day of the recording: the file name's, else the clock's."""
         return self.date_in_file_name or (self.clock.date() if self.clock else None)
-
-    @property
-    def clock_is_one_rollover_behind(self) -> bool:
-        """True if the clock is exactly 1024 weeks behind the file name.
-
-        Satellites count weeks modulo 1024, with the last zero at 7 April 2019. An old receiver gives a date that is
-        19.6 years too early, at the right time of day.
-        """
-        if self.clock is None or self.date_in_file_name is None:
-            return False
-        return self.date_in_file_name - self.clock.date() == _WEEKS_OF_GPS_COUNTER
 
 
 def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:

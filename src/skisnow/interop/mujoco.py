@@ -25,20 +25,11 @@ POINTS: Final = 400
 """Number of points of the integrals along a segment."""
 
 
-def ski_mjcf(
-    ski: Ski,
-    *,
-    segments: int = SEGMENTS,
-    clamp_length: float = CLAMP_LENGTH,
-    damping: float = 0.0,
-    free: bool = True,
-) -> str:
+def ski_mjcf(ski: Ski, *, segments: int = SEGMENTS, free: bool = True) -> str:
     """The text of a model of a ski.
 
     ski: its shape, EI, GJ and mass are taken.
     segments: number of segments of the chains before and behind the binding together, ≥ 4.
-    clamp_length: length that the binding keeps straight (m), > 0.
-    damping: damping of each hinge over its stiffness (s).
     free: whether the middle is free in space, or fixed to it.
     Raises ParameterError: a number is out of its range.
 
@@ -48,13 +39,11 @@ def ski_mjcf(
     """
     require_range("segments", segments, 4)
     length = float(ski.station[0] - ski.station[-1])
-    require_range("clamp_length", clamp_length, 0.0, length, above=True, below=True)
-    require_range("damping", damping, 0.0, np.inf, below=True)
-    half, (tip, tail) = clamp_length / 2.0, (float(ski.station[0]), float(ski.station[-1]))
-    front = round(segments * (tip - half) / (length - clamp_length))
+    half, (tip, tail) = CLAMP_LENGTH / 2.0, (float(ski.station[0]), float(ski.station[-1]))
+    front = round(segments * (tip - half) / (length - CLAMP_LENGTH))
     chains = (
-        _chain(ski, "front", np.linspace(half, tip, front + 1), damping),
-        _chain(ski, "rear", np.linspace(-half, tail, segments - front + 1), damping),
+        _chain(ski, "front", np.linspace(half, tip, front + 1)),
+        _chain(ski, "rear", np.linspace(-half, tail, segments - front + 1)),
     )
     return f"""<mujoco model="{_quoted_name(ski.name)}">
  <compiler angle="radian" autolimits="true"/>
@@ -90,7 +79,7 @@ def rigid_ski_geoms(ski: Ski, *, segments: int = SEGMENTS) -> str:
     return "\n".join(_box_xml(ski, near, far) for near, far in pairwise(places.tolist()))
 
 
-def _chain(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
+def _chain(ski: Ski, name: str, end: FloatArray) -> str:
     """Segments one in the other, from the binding outwards; each body's frame is level at its inner end."""
     middle = (end[:-1] + end[1:]) / 2.0
     opened, before = "", (0.0, 0.0)
@@ -105,10 +94,7 @@ def _chain(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
             ("twist", "1 0 0", at.torsional_stiffness),
         ):
             stiffness = 1.0 / (abs(float(middle[i] - inner)) * float(np.mean(1.0 / along)))
-            opened += (
-                f'<joint name="{name} {i} {what}" axis="{axis}" stiffness="{stiffness!r}" '
-                f'damping="{damping * stiffness!r}"/>\n'
-            )
+            opened += f'<joint name="{name} {i} {what}" axis="{axis}" stiffness="{stiffness!r}" damping="0.0"/>\n'
         opened += _inertial(ski, near, far, place) + _box_xml(ski, near, far, place)
     return opened + "</body>" * len(middle)
 

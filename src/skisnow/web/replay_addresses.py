@@ -63,7 +63,7 @@ class RunFolders:
     def title(self, name: str) -> str:
         """Title of a run of the lab, or the name of its folder."""
         try:
-            return read_record(self.folder / name / JOB, Job, only_known=False).shown_name
+            return read_record(self.folder / name / JOB, Job).shown_name
         except ContentError:
             return name
 

@@ -265,7 +265,7 @@ class Runs:
                 said = str(Message("Nothing has been computed yet.")) if cancelled else last
                 return replace(job, state="cancelled" if cancelled else "failed", said=said)
             try:
-                finished = read_record(summary, FinishedRun, only_known=False)
+                finished = read_record(summary, FinishedRun)
             except ContentError as error:
                 return replace(job, state="failed", said=str(error.message))
             remedy = next((text for code, text in REMEDIES.items() if code == finished.outcome), finished.remedy)

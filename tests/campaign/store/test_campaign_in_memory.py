@@ -22,7 +22,7 @@ from skisnow.campaign.store import (
     sync,
 )
 from skisnow.campaign.store import conflict as conflict_module
-from skisnow.campaign.store.conflict import Divergence, EntryIndex, Side, _shorten_text
+from skisnow.campaign.store.conflict import Conflict, EntryIndex, Side, _shorten_text
 from skisnow.campaign.store.journal_entry import JournalEntry
 from skisnow.campaign.store.stored_tables import (
     ABOVE,
@@ -235,9 +235,9 @@ def divergence(
     there: Sequence[JournalEntry],
     common: Sequence[JournalEntry] = (BEGUN,),
     file: str = FILE,
-) -> Divergence:
+) -> Conflict:
     uids = [{each.sequence: each.uid for each in (*common, *side)} for side in (here, there)]
-    return Divergence("j", (file, "7"), tuple(common), tuple(here), tuple(there), *uids)
+    return Conflict("j", "", file, "7", tuple(common), tuple(here), tuple(there), *uids)
 
 
 @pytest.mark.parametrize(
@@ -311,17 +311,17 @@ def test_it_is_reported_line_by_line() -> None:
     late = entry(10, "add", cells={"experiment": "7", "depth_mm": "4", "remark": ""}, position=2)
     undone = entry(15, "undo", about=2, who="Ada")
     uids = {1: "u1", 2: "u2"}
-    found = Divergence("j", (FILE, "7"), (BEGUN,), (DEEPER, stored, CANCELLED, nameless), (late, undone), uids, uids)
-    told = found.in_words("a day")
+    here = (DEEPER, stored, CANCELLED, nameless)
+    told = Conflict("j", "a day", FILE, "7", (BEGUN,), here, (late, undone), uids, uids)
     assert [line.partition(":")[0] for line in told.here] == ["Bo, 10"] * 3 + ["somebody, 10"]
     for line, parts in zip(told.here, ("'2'", "line 12 '2.5' 'wind'", "it slipped", ""), strict=True):
         assert all(part in line for part in parts.split())
     assert "depth_mm 4" in told.there[0] and told.there[1].startswith("Ada, ")
     head, *lines = str(told).splitlines()
-    assert head.startswith(f"{found.id}  a day (j), ")
+    assert head.startswith(f"{told.id}  a day (j), ")
     assert lines == [*(f"    here: {line}" for line in told.here), *(f"    there: {line}" for line in told.there)]
     described = entry(3, "describe", cells={"campaign.toml": 'name =\n  "x"'})
-    of_toml = Divergence("j", ("campaign.toml", ""), (), (described,), (described,), {}, {}).in_words("x")
+    of_toml = Conflict("j", "x", "campaign.toml", "", (), (described,), (described,), {}, {})
     assert of_toml.here[0].endswith('name = "x"')
     assert "(j), campaign.toml: the" in str(of_toml)
 

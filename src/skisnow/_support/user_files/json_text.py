@@ -74,32 +74,23 @@ def _refuse_constant(word: str) -> None:
 T = TypeVar("T", bound="DataclassInstance")
 
 
-def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> T:
-    """Read a JSON object into a dataclass of texts, numbers, switches and mappings of those.
-
-    only_known: reject keys that are not fields; False: ignore them.
-    """
+def read_record(path: str | Path, kind: type[T]) -> T:
+    """Read a JSON object into a dataclass of texts, numbers, switches and mappings of those; other keys are ignored."""
     values = read_json(path)
     if not isinstance(values, dict):
         raise ContentError("{path} is damaged: it is not a JSON object. Remove it.").tag("damaged", path=path)
     hints = get_type_hints(kind)
-    for name in values if only_known else ():
-        if name not in hints:
-            raise ContentError("{path} is damaged: {key!r} is not one of its keys. Remove it.").tag(
-                "damaged", path=path, key=name[:60]
-            )
-    fields_given = {name: value for name, value in values.items() if name in hints}
     for entry in fields(kind):
-        if entry.name not in fields_given and entry.default is MISSING and entry.default_factory is MISSING:
+        optional = entry.default is not MISSING or entry.default_factory is not MISSING
+        if entry.name not in values and not optional:
             raise ContentError("{path} is damaged: the key {key} is missing. Remove it.").tag(
                 "damaged", path=path, key=entry.name
             )
-    for name, value in fields_given.items():
-        if not _matches_hint(value, hints[name]):
+        if entry.name in values and not _matches_hint(values[entry.name], hints[entry.name]):
             raise ContentError("{path} is damaged: {key} is {value!r}, of another type. Remove it.").tag(
-                "damaged", path=path, key=name, value=str(value)[:60]
+                "damaged", path=path, key=entry.name, value=str(values[entry.name])[:60]
             )
-    return kind(**fields_given)
+    return kind(**{name: value for name, value in values.items() if name in hints})
 
 
 def _matches_hint(value: object, hint: Any) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -114,25 +113,11 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
     if meant:
         line = f"columns.{form.name} = {{{pairs}}}"
         actions.append(Message("Put this at the top of campaign.toml if it is right: {line}.", line=line))
-    other = [
-        Message("{heading} names {unit}", heading=heading, unit=unit)
-        for heading in header.columns
-        if (unit := _unit_of_other_quantity(form, heading))
-    ]
     if left:
         actions.append(Message("No heading looks like {columns}: rename or add it.", columns=left))
-    if other:
-        actions.append(Message("Convert first: {headings}.", headings=other))
     allowed = Message("{required}, or headings that campaign.toml maps to them", required=list(form.required))
     action = joined(actions)
     return error("missing_column", form.file, row=header.row, allowed=allowed, action=action)
-
-
-def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
-    """Unit of a heading whose words are a synonym of a column with another quantity."""
-    bare, unit = re.sub(r"[\[(].*", "", heading), named_unit(heading)
-    column = next(iter(columns_by_synonym(form, [bare]).values()), "") if bare != heading else ""
-    return unit if unit and unit_of_column(column) and conversion(unit, column) is None else None
 
 
 def _missing_column_problem(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
@@ -140,30 +125,15 @@ def _missing_column_problem(form: TableForm, name: str, unknown: Sequence[str], 
     near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
     likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
     meant = as_written[near[0]] if near else likely.get(name)
-    if meant and _needs_conversion(meant, name):
-        action = _advise_mapping(meant, name)
-    elif meant:
-        action = Message(
-            "Did you mean {similar!r}? Rename the column, or map it under [columns] in campaign.toml; the unit is "
-            "part of the name.",
-            similar=meant,
-        )
-    else:
-        action = Message("Add it; the unit belongs to the name.")
+    action = _advise_mapping(meant, name) if meant else Message("Add it; the unit belongs to the name.")
     allowed = Message("the columns {required}", required=list(form.required))
     return error("missing_column", form.file, row=row, column=name, value=meant, allowed=allowed, action=action)
 
 
-def _needs_conversion(heading: str, column: str) -> bool:
-    """True if a heading names another unit than that of the column."""
-    size = conversion(named_unit(heading), column)
-    return size is not None and size.changes
-
-
 def _advise_mapping(heading: str, column: str) -> Message:
     return Message(
-        "Map {heading!r} to {column!r} under [columns] in campaign.toml. This converts its numbers; a new name would "
-        "not.",
+        "Did you mean {column!r}? Rename {heading!r} if its numbers have the unit of this column, or map it under "
+        "[columns] in campaign.toml, which converts them.",
         heading=heading,
         column=column,
     )
@@ -172,14 +142,10 @@ def _advise_mapping(heading: str, column: str) -> Message:
 def _unknown_error(form: TableForm, name: str, header: Header) -> Problem:
     free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
-    if near and _needs_conversion(name, near[0]):
-        action = _advise_mapping(name, near[0])
-    elif near:
-        action = Message(
-            "The column is kept as text and not interpreted. Rename it if you meant {similar!r}.", similar=near[0]
-        )
-    else:
-        action = Message("The column is kept as text and not interpreted; no action is needed.")
+    action = Message("The column is kept as text and not interpreted; no action is needed.")
+    if near:
+        kept = Message("The column is kept as text and not interpreted.")
+        action = joined([kept, _advise_mapping(name, near[0])])
     return warning(
         "unknown_column",
         form.file,

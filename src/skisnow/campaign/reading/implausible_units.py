@@ -168,8 +168,10 @@ def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Prob
     tool, depth = table.names["tool"], table.numbers["depth_mm"]
     for code, name in enumerate(tool.names):
         rows = np.flatnonzero((tool.code == code) & np.isfinite(depth)).tolist()
+        if not rows:
+            continue
         largest = _largest_loads(table, rows)
-        row, hardness = _middle(_hardness(table, name, largest, described), largest or [0])
+        row, hardness = _middle(_hardness(table, name, largest, described), largest)
         if not hardness > HARDEST:
             continue
         (other,) = _hardness(table, name, [row], described, depth_unit=CM)

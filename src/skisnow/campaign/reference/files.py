@@ -14,20 +14,12 @@ from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2
 from ..reading.table_forms import LOADING, UNLOADING
 from . import design
-from .campaign import DEFAULT_NOISE, ReferenceCampaign, reference_campaign
-from .design import ReferenceNoise
+from .campaign import ReferenceCampaign, reference_campaign
 
 _CAMPAIGN_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv", "campaign.toml")
 
 
-def write_reference(
-    folder: str | Path,
-    *,
-    seed: int,
-    noise: ReferenceNoise = DEFAULT_NOISE,
-    turning_angles: bool = False,
-    creep: bool = False,
-) -> None:
+def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = False, creep: bool = False) -> None:
     """Write the reference campaign of a seed: campaign.toml, penetration, shear, density and drop_cone CSV.
 
     Parameters
@@ -36,8 +28,6 @@ def write_reference(
         Folder, created if necessary; other files in it are not changed.
     seed
         As for `skisnow.campaign.reference_campaign`. The same seed writes the same bytes.
-    noise
-        The errors and the scatter of the snow, as for `skisnow.campaign.reference_campaign`.
     turning_angles, creep
         True for turning angles in shear.csv, and depths after waiting in penetration.csv; other cells stay the same.
 
@@ -63,7 +53,7 @@ def write_reference(
       snow for simulation of skiing", J. Glaciol.
     * The page docs/validation/reference-campaign.md.
     """
-    drawn = reference_campaign(seed, noise=noise, turning_angles=turning_angles, creep=creep)
+    drawn = reference_campaign(seed, turning_angles=turning_angles, creep=creep)
     folder = Path(folder)
     there = [name for name in _CAMPAIGN_FILES if (folder / name).exists()]
     if there:

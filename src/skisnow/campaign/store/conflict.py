@@ -32,75 +32,58 @@ _KINDS: Final[dict[Kind, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A conflict: contradicting entries of two stores about one test, which are not transferred.
+    """Entries of two stores about one test, in the order of their uids; they are not transferred if they contradict.
 
-    id: identifier of the conflict for a choice; it changes if one side changes.
-    campaign, name: id and name of the campaign.
+    campaign, name: id and name of the campaign; "" without a name.
     file, test: table and test of the entries; for a description ``campaign.toml`` and ``""``.
-    what: kind of conflict in words.
-    here, there: entries that only one store has, one line each, oldest first.
-    choices: sides that can be kept.
+    common, entries_here, entries_there: entries of both stores, and those of only one.
+    uid_here, uid_there: uids of the entries of the campaign by their sequence.
     """
 
-    id: str
     campaign: str
     name: str
     file: str
     test: str
-    what: str
-    here: tuple[str, ...]
-    there: tuple[str, ...]
-    choices: tuple[Side, ...]
-
-    def __str__(self) -> str:
-        """The conflict in a few lines."""
-        subject = f"{self.file}, {self.test}" if self.test else self.file
-        lines = [f"{self.id}  {self.name} ({self.campaign}), {subject}: {self.what}"]
-        lines += [f"    {side}: {line}" for side in ("here", "there") for line in getattr(self, side)]
-        return "\n".join(lines)
-
-
-@dataclass(frozen=True, slots=True)
-class Divergence:
-    """Entries about one test in the order of their uids: those of both stores, and those of only one."""
-
-    journal_id: str
-    subject: Subject
     common: tuple[JournalEntry, ...]
-    here: tuple[JournalEntry, ...]
-    there: tuple[JournalEntry, ...]
+    entries_here: tuple[JournalEntry, ...]
+    entries_there: tuple[JournalEntry, ...]
     uid_here: Mapping[int, str]
     uid_there: Mapping[int, str]
 
     @property
+    def entries(self) -> tuple[JournalEntry, ...]:
+        """Entries that only one store has."""
+        return (*self.entries_here, *self.entries_there)
+
+    @property
     def id(self) -> str:
-        """Identifier for a choice, which changes with the entries of both sides."""
-        parts = (self.journal_id, *self.subject, *(entry.uid for side in (self.here, self.there) for entry in side))
-        said = sha256("\0".join(parts).encode())
-        return said.hexdigest()[:_ID_DIGITS]
+        """Identifier for a choice; it changes if one side changes."""
+        parts = (self.campaign, self.file, self.test, *(entry.uid for entry in self.entries))
+        return sha256("\0".join(parts).encode()).hexdigest()[:_ID_DIGITS]
 
     @property
     def is_agreed(self) -> bool:
         """True if the entries of both sides are compatible without a choice."""
-        if self.subject[0] == DESCRIPTION:
-            return self.here[-1].cells == self.there[-1].cells
-        entries = (*self.here, *self.there)
-        if all(entry.action == "correct" for entry in entries):
+        if self.file == DESCRIPTION:
+            return self.entries_here[-1].cells == self.entries_there[-1].cells
+        actions = {entry.action for entry in self.entries}
+        if actions == {"correct"}:
             return not self.contested
-        return not any(entry.action == "add" for entry in entries) and self._counts("here") == self._counts("there")
+        counts = _counts(self.entries_here, self.uid_here), _counts(self.entries_there, self.uid_there)
+        return "add" not in actions and counts[0] == counts[1]
 
     @property
     def contested(self) -> list[tuple[str, str]]:
         """Cells that both sides corrected differently: uid of the row's entry, and column."""
-        here, there = _corrected(self.here, self.uid_here), _corrected(self.there, self.uid_there)
+        here, there = _corrected(self.entries_here, self.uid_here), _corrected(self.entries_there, self.uid_there)
         return sorted(cell for cell in here.keys() & there.keys() if here[cell] != there[cell])
 
     @property
     def kind(self) -> Kind:
         """Kind of the conflict."""
-        actions = {entry.action for entry in (*self.here, *self.there)}
-        added = [any(entry.action == "add" for entry in side) for side in (self.here, self.there)]
-        if self.subject[0] == DESCRIPTION:
+        actions = {entry.action for entry in self.entries}
+        added = [any(entry.action == "add" for entry in side) for side in (self.entries_here, self.entries_there)]
+        if self.file == DESCRIPTION:
             return "described"
         if all(added):
             return "added to" if any(entry.action == "add" for entry in self.common) else "begun twice"
@@ -111,51 +94,63 @@ class Divergence:
         return "corrected" if self.contested else "added to"
 
     @property
+    def what(self) -> str:
+        """Kind of the conflict in words."""
+        return _KINDS[self.kind]
+
+    @property
     def choices(self) -> tuple[Side, ...]:
-        """Choices for the user: "here", "there", and also "both" if neither contradicts the other."""
+        """Sides that can be kept: "here", "there", and also "both" if neither contradicts the other."""
         together = self.kind == "begun twice" or (self.kind == "cancelled" and not self.contested)
         return ("here", "there", "both") if together else ("here", "there")
 
-    def in_words(self, name: str) -> Conflict:
-        """The conflict as text for the user, with the name of the campaign."""
-        entries_by_uid = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
-        return Conflict(
-            id=self.id,
-            campaign=self.journal_id,
-            name=name,
-            file=self.subject[0],
-            test=self.subject[1],
-            what=_KINDS[self.kind],
-            here=tuple(_entry_line(entry, self.uid_here, entries_by_uid) for entry in self.here),
-            there=tuple(_entry_line(entry, self.uid_there, entries_by_uid) for entry in self.there),
-            choices=self.choices,
-        )
+    @property
+    def here(self) -> list[str]:
+        """A line for each entry that only this store has, oldest first."""
+        return self._lines(self.entries_here, self.uid_here)
 
-    def _counts(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
-        entries, uids = (self.here, self.uid_here) if side == "here" else (self.there, self.uid_there)
-        return Counter(
-            (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why)
-            for entry in entries
-        )
+    @property
+    def there(self) -> list[str]:
+        """A line for each entry that only the other store has, oldest first."""
+        return self._lines(self.entries_there, self.uid_there)
+
+    def _lines(self, entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> list[str]:
+        by_uid = {entry.uid: entry for entry in (*self.common, *self.entries)}
+        subjects = [(entry, by_uid.get(uids.get(entry.about or 0, ""))) for entry in entries]
+        return [f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}" for entry, about in subjects]
+
+    def __str__(self) -> str:
+        """The conflict in a few lines."""
+        subject = f"{self.file}, {self.test}" if self.test else self.file
+        lines = [f"{self.id}  {self.name} ({self.campaign}), {subject}: {self.what}"]
+        lines += [f"    here: {line}" for line in self.here]
+        return "\n".join([*lines, *(f"    there: {line}" for line in self.there)])
 
 
-def open_divergences(here: Connection, there: Connection, journal_id: str) -> Iterator[Divergence]:
+def _counts(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> Counter[tuple[object, ...]]:
+    return Counter(
+        (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why) for entry in entries
+    )
+
+
+def open_conflicts(here: Connection, there: Connection, journal_id: str) -> Iterator[Conflict]:
     """Tests about which the entries that only one store has contradict those that only the other has."""
     of_here, of_there = entry_index(here, journal_id), entry_index(there, journal_id)
     for subject in of_here.written_on_both(of_there):
         on_here, on_there = entries_about(here, journal_id, subject), entries_about(there, journal_id, subject)
         uids_here, uids_there = {entry.uid for entry in on_here}, {entry.uid for entry in on_there}
-        divergence = Divergence(
+        conflict = Conflict(
             journal_id,
-            subject,
+            "",
+            *subject,
             common=tuple(entry for entry in on_here if entry.uid in uids_there),
-            here=tuple(entry for entry in on_here if entry.uid not in uids_there),
-            there=tuple(entry for entry in on_there if entry.uid not in uids_here),
+            entries_here=tuple(entry for entry in on_here if entry.uid not in uids_there),
+            entries_there=tuple(entry for entry in on_there if entry.uid not in uids_here),
             uid_here=of_here.uid,
             uid_there=of_there.uid,
         )
-        if not divergence.is_agreed:
-            yield divergence
+        if not conflict.is_agreed:
+            yield conflict
 
 
 def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict[tuple[str, str], str]:
@@ -166,11 +161,6 @@ def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict
         if entry.action == "correct"
         for column, text in entry.cells.items()
     }
-
-
-def _entry_line(entry: JournalEntry, uids: Mapping[int, str], entries_by_uid: Mapping[str, JournalEntry]) -> str:
-    about = entries_by_uid.get(uids.get(entry.about or 0, ""))
-    return f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}"
 
 
 def _entry_words(entry: JournalEntry, about: JournalEntry | None) -> str:

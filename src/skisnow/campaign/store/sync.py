@@ -15,7 +15,7 @@ from sqlalchemy import Connection, insert, select
 
 from ..._support.errors import StoreError
 from ..._support.messages import Message
-from .conflict import Conflict, Divergence, Side, entries_by_uid, entry_index, open_divergences, shared_journals
+from .conflict import Conflict, Side, entries_by_uid, entry_index, open_conflicts, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
 from .journal import entered_name
@@ -153,7 +153,7 @@ class _Sync:
         if not chosen:
             return 0
         with reading(self._there.engine) as there, writing(self._here.engine) as here:
-            open_ = {divergence.id: divergence for divergence in self._open_divergences(here, there)}
+            open_ = {conflict.id: conflict for conflict in self._open_conflicts(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
                 raise StoreError(
                     "There is no open conflict {names}: one of its sides may have changed. Nothing was settled; "
@@ -161,20 +161,20 @@ class _Sync:
                 ).tag("unknown_conflict", names=list(unknown))
             sides = {id_: chosen.get(id_, chosen.get(ALL)) for id_ in open_}
             choices = [(open_[id_], side) for id_, side in sides.items() if side is not None]
-            for divergence, side in choices:
-                settle(here, there, divergence, side, who)
+            for conflict, side in choices:
+                settle(here, there, conflict, side, who)
         return len(choices)
 
     def _find_conflicts(self) -> tuple[Conflict, ...]:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
-            open_ = list(self._open_divergences(here, there))
+            open_ = list(self._open_conflicts(here, there))
             names = names_of(here).all if open_ else {}
-        return tuple(divergence.in_words(names.get(divergence.journal_id, "")) for divergence in open_)
+        return tuple(replace(conflict, name=names.get(conflict.campaign, "")) for conflict in open_)
 
-    def _open_divergences(self, here: Connection, there: Connection) -> Iterator[Divergence]:
+    def _open_conflicts(self, here: Connection, there: Connection) -> Iterator[Conflict]:
         for id_ in shared_journals(here, there):
             with self._collect_damage(id_):
-                yield from list(open_divergences(here, there, id_))
+                yield from list(open_conflicts(here, there, id_))
 
     @contextmanager
     def _collect_damage(self, journal_id: str) -> Iterator[None]:
@@ -257,7 +257,7 @@ def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
     Raises StoreError: an entry is damaged.
     """
     of_source, held = entry_index(source, journal_id), entry_index(to, journal_id)
-    open_ = {divergence.subject for divergence in open_divergences(source, to, journal_id)}
+    open_ = {(conflict.file, conflict.test) for conflict in open_conflicts(source, to, journal_id)}
     wanted = [uid for uid in of_source.missing_in(held) if of_source.subject[uid] not in open_]
     return len(take_entries(source, to, journal_id, wanted))
 
@@ -289,57 +289,57 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
     return {entry.uid: entry.sequence for entry in taken}
 
 
-def settle(here: Connection, there: Connection, divergence: Divergence, side: Side, who: str) -> None:
+def settle(here: Connection, there: Connection, conflict: Conflict, side: Side, who: str) -> None:
     """Write the entries of both sides and the choice between them to this store.
 
     Raises StoreError: both cannot be kept.
     """
-    if side not in divergence.choices:
+    if side not in conflict.choices:
         raise StoreError("The conflict {id} cannot be settled by keeping {side}: {choices}.").tag(
-            "unknown_side", id=divergence.id, side=side, choices=list(divergence.choices)
+            "unknown_side", id=conflict.id, side=side, choices=list(conflict.choices)
         )
-    numbers = take_entries(there, here, divergence.journal_id, [entry.uid for entry in divergence.there])
-    if divergence.subject[0] == DESCRIPTION:
-        cells = (divergence.here if side == "here" else divergence.there)[-1].cells
+    numbers = take_entries(there, here, conflict.campaign, [entry.uid for entry in conflict.entries_there])
+    if conflict.file == DESCRIPTION:
+        cells = (conflict.entries_here if side == "here" else conflict.entries_there)[-1].cells
         entry = NewEntry(action="describe", file=DESCRIPTION, cells=cells, who=who, why="stores synchronised")
-        write_entry(here, divergence.journal_id, entry)
+        write_entry(here, conflict.campaign, entry)
     elif side != "both":
-        others = divergence.there if side == "here" else divergence.here
+        others = conflict.entries_there if side == "here" else conflict.entries_here
         names = ", ".join(dict.fromkeys(entry.who for entry in others if entry.who))
         why = f"stores synchronised, the other side kept{f'; written by {names}' if names else ''}"
-        _undo_entries(here, divergence, [numbers.get(entry.uid, entry.sequence) for entry in others], why, who)
-    elif divergence.kind == "begun twice":
-        _rename(here, there, divergence, who)
+        _undo_entries(here, conflict, [numbers.get(entry.uid, entry.sequence) for entry in others], why, who)
+    elif conflict.kind == "begun twice":
+        _rename(here, there, conflict, who)
 
 
-def _undo_entries(here: Connection, divergence: Divergence, numbers: Iterable[int], why: str, who: str) -> None:
-    file, test = divergence.subject
+def _undo_entries(here: Connection, conflict: Conflict, numbers: Iterable[int], why: str, who: str) -> None:
+    file, test = conflict.file, conflict.test
     for number in sorted(numbers, reverse=True):
         entry = NewEntry(action="undo", file=file, test=test, about=number, who=who, why=why)
-        write_entry(here, divergence.journal_id, entry)
+        write_entry(here, conflict.campaign, entry)
 
 
-def _rename(here: Connection, there: Connection, divergence: Divergence, who: str) -> None:
+def _rename(here: Connection, there: Connection, conflict: Conflict, who: str) -> None:
     """Rename this store's test: its entries are undone and written again with the new name."""
-    file, test = divergence.subject
+    file, test = conflict.file, conflict.test
     key = FORMS[file].key if file in FORMS else ""
-    name = _free_name(here, there, divergence)
+    name = _free_name(here, there, conflict)
     why = f"stores synchronised; goes on as {name}"
-    _undo_entries(here, divergence, [entry.sequence for entry in divergence.here], why, who)
+    _undo_entries(here, conflict, [entry.sequence for entry in conflict.entries_here], why, who)
     numbers: dict[int, int] = {}
-    for entry in divergence.here:
+    for entry in conflict.entries_here:
         about = None if entry.about is None else numbers[entry.about]
         plain = {field: getattr(entry, field) for field in ("action", "file", "position", "who", "why")}
         cells = {column: name if column == key and text == test else text for column, text in entry.cells.items()}
         new = NewEntry(**plain, test=name, cells=cells, about=about)
-        written = write_entry(here, divergence.journal_id, new, at=entry.at)
+        written = write_entry(here, conflict.campaign, new, at=entry.at)
         numbers[entry.sequence] = written.sequence
 
 
-def _free_name(here: Connection, there: Connection, divergence: Divergence) -> str:
-    file, test = divergence.subject
-    subjects = {*entry_index(here, divergence.journal_id).subject.values()}
-    subjects |= {*entry_index(there, divergence.journal_id).subject.values()}
+def _free_name(here: Connection, there: Connection, conflict: Conflict) -> str:
+    file, test = conflict.file, conflict.test
+    subjects = {*entry_index(here, conflict.campaign).subject.values()}
+    subjects |= {*entry_index(there, conflict.campaign).subject.values()}
     number = 2
     while (file, f"{test} ({number})") in subjects:
         number += 1

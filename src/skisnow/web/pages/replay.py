@@ -108,7 +108,7 @@ def _add_run(place: Path, name: str, title: str) -> None:
 def _in_words(place: Path) -> str:
     """Line with the extent and outcome of a run from summary.json."""
     try:
-        run = read_record(place / "summary.json", FinishedRun, only_known=False)
+        run = read_record(place / "summary.json", FinishedRun)
         return f"{run.extent}, {run.outcome_in_words}"
     except ContentError:
         return Message("without a readable summary")
