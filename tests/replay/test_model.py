@@ -146,8 +146,8 @@ def test_pieces_of_groove_of_a_single_moment_have_its_time() -> None:
 
 
 def test_every_array_has_a_kind_and_a_unit_that_readers_know() -> None:
-    assert {each.type for each in ARRAY_TYPES.values()} == {"float32", "uint16"}
-    assert {each.unit for each in ARRAY_TYPES.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m", "N"}
+    assert {kind for kind, _ in ARRAY_TYPES.values()} == {"float32", "uint16"}
+    assert {unit for _, unit in ARRAY_TYPES.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m", "N"}
 
 
 def test_quaternions_go_on_over_more_than_a_turn() -> None:

@@ -8,7 +8,7 @@ from PIL import Image
 
 from skisnow import samples
 from skisnow.campaign.store import ReplayedTest, attachments_of
-from skisnow.campaign.store.attachments import photo_of
+from skisnow.campaign.store.export import photo_of
 
 from .browser_types import Page
 from .conftest import Served, entered, ready

@@ -130,9 +130,9 @@ class CsvText:
             rows.pop()
         except csv.Error:  # a cell beyond the csv module's limit: an open quote swallows the file, or it is as long
             yield lines, rows
-            raise _long_cell_error(line) from None
+            raise _quote_error(line, f"a cell of more than {csv.field_size_limit()} characters") from None
         yield lines, rows
-        raise _open_quote_error(line)
+        raise _quote_error(line, '"')
 
 
 def _require_size(lines: list[int], rows: list[list[str]]) -> None:
@@ -158,23 +158,12 @@ def _require_size(lines: list[int], rows: list[list[str]]) -> None:
         )
 
 
-def _open_quote_error(line: int) -> UnreadableTextError:
+def _quote_error(line: int, value: str) -> UnreadableTextError:
     return UnreadableTextError(
         row=line,
-        value='"',
-        allowed=Message("quotes in pairs"),
-        action=Message(
-            "A quote opened in this row is never closed, so that the rest of the file was not read; close it."
-        ),
-    )
-
-
-def _long_cell_error(line: int) -> UnreadableTextError:
-    return UnreadableTextError(
-        row=line,
-        value=f"a cell of more than {csv.field_size_limit()} characters",
+        value=value,
         allowed=Message("quotes in pairs, and cells of at most {longest_cell} characters", longest_cell=LONGEST_CELL),
-        action=Message("Close the quote that is opened in this row, or shorten the cell."),
+        action=Message("Close the quote that is opened in this row, or shorten the cell; the rest was not read."),
     )
 
 

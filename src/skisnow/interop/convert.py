@@ -68,32 +68,25 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
 
 def smet_text(series: StationSeries) -> str:
     """Content of an SMET 1.1 file with all fields in SI."""
-    return "\n".join(_smet_lines(series)) + "\n"
-
-
-def _smet_lines(series: StationSeries) -> Iterator[str]:
-    place = {
-        "latitude": series.latitude_deg,
-        "longitude": series.longitude_deg,
-        "altitude": series.altitude,
-    }
-    yield "SMET 1.1 ASCII"
-    yield "[HEADER]"
     name = re.sub("[#;]", " ", series.station)  # these begin a comment
-    yield f"station_id = {''.join(name.split()) or 'station'}"
-    yield f"station_name = {name}"
-    yield from (f"{key} = {NO_DATA if value is None else value:.10g}" for key, value in place.items())
-    yield f"nodata = {NO_DATA:g}"
-    yield f"tz = {series.utc_offset:g}"
-    yield f"fields = {' '.join(('timestamp', *series.fields))}"
-    yield "[DATA]"
+    place = {"latitude": series.latitude_deg, "longitude": series.longitude_deg, "altitude": series.altitude}
+    lines = [
+        "SMET 1.1 ASCII",
+        "[HEADER]",
+        f"station_id = {''.join(name.split()) or 'station'}",
+        f"station_name = {name}",
+    ]
+    lines += [f"{key} = {NO_DATA if value is None else value:.10g}" for key, value in place.items()]
+    lines += [f"nodata = {NO_DATA:g}", f"tz = {series.utc_offset:g}"]
+    lines += [f"fields = {' '.join(('timestamp', *series.fields))}", "[DATA]"]
     columns = [column.tolist() for column in series.fields.values()]
     for when, *values in zip(_time_texts(series, zone=False), *columns, strict=True):
         if NO_DATA in values:
             raise ParameterError(
                 "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET"
             ).tag("out_of_range", file=series.file, no_data=NO_DATA, when=when)
-        yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
+        lines.append(" ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values))))
+    return "\n".join(lines) + "\n"
 
 
 def _time_texts(series: StationSeries, *, zone: bool) -> Iterator[str]:
@@ -158,7 +151,10 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     made = CONVERSIONS.get(kinds)
     if made is None:
         raise ParameterError("{source} to {target} is not known. Known are {known}").tag(
-            "unknown_name", source=kinds[0], target=kinds[1], known=known_conversions()
+            "unknown_name",
+            source=kinds[0],
+            target=kinds[1],
+            known="; ".join(f"{read} to {written}" for read, written in CONVERSIONS),
         )
     if source.resolve() == target.resolve():
         raise OutputError("{target} is the file that is read; give the new one another name").tag(
@@ -174,11 +170,6 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
             "layers of a run come from a .pnt file and go into a .csv file. Remove --layers-to-mm"
         ).tag("wrong_ending")
     return made(source, target, options)
-
-
-def known_conversions() -> str:
-    """All conversions, in words."""
-    return "; ".join(f"{source} to {target}" for source, target in CONVERSIONS)
 
 
 def _kind_of_file(path: Path) -> str:

@@ -103,37 +103,28 @@ def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str
         "density",
         DENSITY,
         [
-            (*_top_and_bottom(height, density.top, density.thickness), f"{density.snow_density:g}", NO_DATA, NO_DATA)
+            (*_top_and_bottom(height, density), f"{density.snow_density:g}", NO_DATA, NO_DATA)
             for density in pit.densities
         ],
     )
     yield (
         "temperature",
         TEMPERATURE,
-        [
-            (_centimetre_text(height - temperature.depth), f"{temperature.temperature_C:g}")
-            for temperature in pit.temperatures
-        ],
+        [(_centimetre_text(height - observed.depth), f"{observed.temperature_C:g}") for observed in pit.temperatures],
     )
-    yield (
-        "stratigraphy",
-        STRATIGRAPHY,
-        [
-            (
-                *_top_and_bottom(height, layer.top, layer.thickness),
-                NO_DATA if layer.grain_size is None else f"{layer.grain_size / MM:g}",
-                layer.grain_form or NO_DATA,
-                "/".join(filter(None, (layer.hardness, layer.hardness_bottom))) or NO_DATA,
-                NO_DATA,
-                layer.comment,
-            )
-            for layer in pit.layers
-        ],
-    )
+    yield "stratigraphy", STRATIGRAPHY, [_layer_cells(height, layer) for layer in pit.layers]
 
 
-def _top_and_bottom(height: float, top: float, thickness: float | None) -> tuple[str, str]:
-    return _centimetre_text(height - top), NO_DATA if thickness is None else _centimetre_text(height - top - thickness)
+def _layer_cells(height: float, layer: SnowLayer) -> tuple[str, ...]:
+    size = NO_DATA if layer.grain_size is None else f"{layer.grain_size / MM:g}"
+    hardness = "/".join(filter(None, (layer.hardness, layer.hardness_bottom))) or NO_DATA
+    form = layer.grain_form or NO_DATA
+    return (*_top_and_bottom(height, layer), size, form, hardness, NO_DATA, layer.comment)
+
+
+def _top_and_bottom(height: float, layer: SnowLayer | LayerDensity) -> tuple[str, str]:
+    bottom = None if layer.thickness is None else height - layer.top - layer.thickness
+    return _centimetre_text(height - layer.top), _centimetre_text(bottom)
 
 
 def _centimetre_text(length: float | None) -> str:
@@ -161,15 +152,12 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     Raises ParameterError: the campaign has no such site; the message names those that it has.
     """
     campaign = analysis.campaign
-    sites = {name for table in _density_tables(campaign) for name in table[0]}
+    sites = sites_of(campaign)
     if site not in sites:
         raise ParameterError("{name} has no site {site!r}; it has {sites}").tag(
-            "no_data", name=campaign.name, site=site, sites=sorted(sites)
+            "no_data", name=campaign.name, site=site, sites=list(sites)
         )
-    temperatures, air = (
-        _numbers_of_text_column(campaign, site, "snow_temperature_C"),
-        _numbers_of_text_column(campaign, site, "air_temperature_C"),
-    )
+    temperatures, air = (_numbers_of_text_column(campaign, site, f"{what}_temperature_C") for what in ("snow", "air"))
     densities = tuple(_densities(campaign, site))
     profiles = tuple(_used_recordings(analysis, site))
     first = profiles[0][0] if profiles else None

@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -36,14 +36,6 @@ _EXACT: Final = "float32"
 _COARSE: Final = "uint16"
 
 
-@dataclass(frozen=True, slots=True)
-class _ArrayType:
-    """Type of the numbers of an array in a file, and their unit."""
-
-    type: str
-    unit: str
-
-
 _NAMES: Final[dict[tuple[str, str], str]] = {
     (_EXACT, "s"): "time groove_time track_time gate_time",
     (_EXACT, "m"): (
@@ -60,8 +52,8 @@ _NAMES: Final[dict[tuple[str, str], str]] = {
     (_EXACT, "N"): "force normal_force",
     (_COARSE, "1"): "groove_left groove_ski skier_colours skier_triangles",
 }
-ARRAY_TYPES: Final = {name: _ArrayType(*of) for of, names in _NAMES.items() for name in names.split()}
-"""Types of all arrays of a file; uint16 has an error of at most half a step, 1/131070 of the array's range."""
+ARRAY_TYPES: Final = {name: of for of, names in _NAMES.items() for name in names.split()}
+"""Types and units of all arrays; uint16 has an error of at most half a step, 1/131070 of the array's range."""
 _MOTION: Final = ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
 _SKI_HISTORIES: Final = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")
 _Part = TypeVar("_Part", Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack)
@@ -75,7 +67,7 @@ def replay_bytes(replay: Replay) -> bytes:
     """
     arrays, described, at = [], {}, 0
     for name, values in _arrays_by_name(thin_replay(replay)).items():
-        content, description = _pack_array(ARRAY_TYPES[name], values)
+        content, description = _pack_array(*ARRAY_TYPES[name], values)
         described[name] = description | {"start": at}
         arrays.append(content)
         at += len(content)
@@ -184,9 +176,9 @@ def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
     return {"height": skier.height, "weight": skier.weight, "joints": list(JOINTS), "parts": parts}
 
 
-def _pack_array(array_type: _ArrayType, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
-    description: dict[str, Any] = {"type": array_type.type, "shape": list(values.shape), "unit": array_type.unit}
-    if array_type.type == _EXACT:
+def _pack_array(kind: str, unit: str, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
+    description: dict[str, Any] = {"type": kind, "shape": list(values.shape), "unit": unit}
+    if kind == _EXACT:
         numbers: npt.NDArray[Any] = values.astype("<f4")
         back = numbers.astype(float)
     else:

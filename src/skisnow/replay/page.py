@@ -19,7 +19,7 @@ from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
 from .from_run import replay_of_run
-from .replay import Replay, ReplayTrack
+from .replay import Replay
 from .run_file import replay_of_file
 
 MODULES: Final = (
@@ -44,7 +44,6 @@ def write_replay(
     *,
     ghost: Run | Replay | str | Path | None = None,
     title: str | None = None,
-    track: ReplayTrack | None = None,
     language: str = ENGLISH,
 ) -> Path:
     """Write a replay as one HTML file that opens without a server and without network.
@@ -53,30 +52,27 @@ def write_replay(
     path: path of the HTML file; an existing file is replaced.
     ghost: second run, shown translucent at the same times.
     title: title for the reader (default: the folder's name, or "A simulated run").
-    track: measured track in the run's axes; not allowed with a replay, which has its own track.
     language: language of the page (en, de).
     Returns: path of the file.
     Raises ParameterError: a folder has no run that can be shown, or the language is unknown.
     Raises OutputError: the file cannot be written.
     """
     require_language(language)
-    shown = [_make_replay(run, title, track)]
-    if ghost is not None:
-        shown.append(_make_replay(ghost, None, None))
-    write_file(path, replay_page(*shown, language=language))
+    shown = _make_replay(run, title)
+    write_file(path, replay_page(shown, None if ghost is None else _make_replay(ghost), language=language))
     return Path(path)
 
 
-def _make_replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrack | None) -> Replay:
+def _make_replay(run: Run | Replay | str | Path, title: str | None = None) -> Replay:
     if isinstance(run, Replay):
-        if track is not None or title is not None:
-            raise ParameterError(
-                "a replay has its own title and track: give them to replay_of_run or replay_of_file"
-            ).tag("not_together")
+        if title is not None:
+            raise ParameterError("a replay has its own title: give it to replay_of_run or replay_of_file").tag(
+                "not_together"
+            )
         return run
     if isinstance(run, Run):
-        return replay_of_run(run, track=track) if title is None else replay_of_run(run, title=title, track=track)
-    return replay_of_file(run, title=title, track=track)
+        return replay_of_run(run) if title is None else replay_of_run(run, title=title)
+    return replay_of_file(run, title=title)
 
 
 def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENGLISH) -> str:

@@ -12,7 +12,6 @@ from scipy.io import netcdf_file
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SkisnowError, require_range
-from .._support.messages import Message, template
 from .._support.units import DEGREE
 from .._support.user_files import ContentError, json_value
 from ..geometry.vectors import axes_of
@@ -115,7 +114,7 @@ def _values(file: Any, name: str) -> FloatArray:
 def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
     slope, file = _read_slope(path, values), scenario_value(values, "ski.file")
     if ski is None:
-        ski = ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file, "ski"))
+        ski = ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file))
     has_skier, edge_angle = values.get("skier.steers") is not None, needed_value(values, "sledge.edge_angle_deg")
     mass, inertia = needed_value(values, "sledge.mass_kg"), needed_value(values, "sledge.inertia_kg_m2")
     body = height_of(mass, inertia[0]), mass * needed_value(values, "slope.gravity_m_per_s2")
@@ -146,8 +145,8 @@ def _read_slope(path: Path, values: dict[str, Any]) -> Slope:
     if kind == "grid":
         origin = {f"origin_{axis}": scenario_value(values, f"slope.origin_{axis}_m") or 0.0 for axis in "xy"}
         smoothing = scenario_value(values, "slope.smooth_m") or 0.0
-        return read_terrain(_locate(path, needed_value(values, "slope.grid"), "slope"), smoothing=smoothing, **origin)
-    profile = _locate(path, needed_value(values, "slope.profile"), "slope")
+        return read_terrain(_locate(path, needed_value(values, "slope.grid")), smoothing=smoothing, **origin)
+    profile = _locate(path, needed_value(values, "slope.profile"))
     return read_profile(profile, gap=scenario_value(values, "slope.profile_gap") or "error")
 
 
@@ -160,7 +159,7 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
     if name is None and file is None:
         return None
     try:
-        place = name if name is not None else _locate(path, file, "course")
+        place = name if name is not None else _locate(path, file)
         course = read_course(place, **{key: value for key, value in options.items() if value is not None})
     except ParameterError:
         return None
@@ -173,29 +172,15 @@ def _not_a_run(path: Path, error: Exception) -> ParameterError:
     ).tag("not_a_run", path=path, error=error)
 
 
-_MISSING: Final = {
-    "ski": template(
-        "{path} was simulated with the ski of {file}, which does not exist any more; its shape is needed to draw "
-        "the run. Put it into {folder}"
-    ),
-    "slope": template(
-        "{path} was simulated on the slope of {file}, which does not exist any more; its shape is needed to draw "
-        "the run. Put it into {folder}"
-    ),
-    "course": template(
-        "{path} was simulated with the course of {file}, which does not exist any more; it is needed to draw the "
-        "run. Put it into {folder}"
-    ),
-}
-
-
-def _locate(path: Path, named: str, kind: str) -> Path:
+def _locate(path: Path, named: str) -> Path:
     """Path of a file that the scenario names, from the current folder or that of the run."""
     for place in (Path(named), path.parent / named, path.parent.parent / named):
         if place.is_file():
             return place
-    message = Message(_MISSING[kind], path=path, file=named, folder=path.parent)
-    raise ParameterError(message).tag("missing_file")
+    raise ParameterError(
+        "{path} was simulated with {file}, which does not exist any more; it is needed to draw the run. Put it into "
+        "{folder}"
+    ).tag("missing_file", path=path, file=named, folder=path.parent)
 
 
 LARGEST: Final = 1e9

@@ -27,7 +27,7 @@ from ..campaign.store import (
     replay_journal,
     stored_tables,
 )
-from ..campaign.store.attachments import rows_of_file
+from ..campaign.store.export import rows_of_file
 from ..campaign.store.replayed import Reading
 from ..campaign.store.stored_tables import cell_key
 from ..estimation import quality_flags

@@ -102,7 +102,7 @@ def test_points_in_a_file_of_commas(small: SmallCampaign) -> None:
     text = "test;site;repeat;drop_cone_depth_mm\nC1;S;1;12,5\nC1;S;2;13,5\nC2;S;1;1.234\n"
     errors = small.errors({CONE: text})
     assert [where(problem) for problem in errors] == [("not_a_number", CONE, 4, DROP_CONE_DEPTH, "C2", "1.234")]
-    assert "decimal commas" in errors[0].action
+    assert "decimal mark of this file is ','" in errors[0].action
     quoted = 'test,site,repeat,drop_cone_depth_mm\nC1,S,1,"12,5"\nC1,S,2,13\n'
     problems = small.check({CONE: quoted})
     assert [where(problem) for problem in problems] == [("separator", CONE, None, None, None, "decimal comma")]

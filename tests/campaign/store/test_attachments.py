@@ -24,7 +24,7 @@ from skisnow.campaign.store import (
     replay_journal,
     sync,
 )
-from skisnow.campaign.store.attachments import MOST_PHOTO_BYTES, photo_of
+from skisnow.campaign.store.export import MOST_PHOTO_BYTES, photo_of
 
 TOML = 'name = "x"\n[[tool]]\nname = "t"\nshape = "ski"\nlength_mm = 200\nwidth_mm = 62\n'
 PHOTO = b"\xff\xd8\xff" + bytes(range(256)) * 1000

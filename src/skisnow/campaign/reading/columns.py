@@ -143,13 +143,11 @@ class NumberCollector:
     def _how_to_write(self, cell: str) -> Message:
         if not cell:
             return Message("Enter the number.")
-        if self._mark == "," and is_number(cell, "."):
+        if is_number(cell, "." if self._mark == "," else ","):
             return Message(
-                "This file writes decimal commas; {cell} could be a thousand. Write it as the other cells.", cell=cell
-            )
-        if self._mark == "." and is_number(cell, ","):
-            return Message(
-                "This file writes decimal points; {cell} could be a thousand. Write it as the other cells.", cell=cell
+                "The decimal mark of this file is {mark!r}; {cell} could be a thousand. Write it as the other cells.",
+                mark=self._mark,
+                cell=cell,
             )
         return Message(
             "Write a plain number such as {example}, without unit, remark or thousands separator.",

@@ -155,11 +155,7 @@ def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Probl
         values = f"{load[rows].min():g} to {load[rows].max():g} with tool {name}"
         largest = _largest_loads(table, rows.tolist())
         row, hardness = _middle(_hardness(table, name, largest, described), largest)
-        both = Message(
-            "H_V of this experiment is {hardness:.4g} N/mm³ if they are in N, {other:.4g} in kg.",
-            hardness=hardness,
-            other=hardness * KILOGRAM_FORCE,
-        )
+        both = _both_readings("H_V", hardness, hardness * KILOGRAM_FORCE, "N/mm³", ("N", "kg"))
         yield _missing_unit(table, "load_N", values, both, "kg", row)
 
 
@@ -176,11 +172,7 @@ def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Prob
             continue
         (other,) = _hardness(table, name, [row], described, depth_unit=CM)
         values = f"{depth[rows].min():g} to {depth[rows].max():g} with tool {name}"
-        both = Message(
-            "H_V of this experiment is {hardness:.4g} N/mm³ if they are in mm, {other:.4g} in cm.",
-            hardness=hardness,
-            other=other,
-        )
+        both = _both_readings("H_V", hardness, other, "N/mm³", ("mm", "cm"))
         yield _missing_unit(table, "depth_mm", values, both, "cm", row)
 
 
@@ -221,12 +213,7 @@ def _lever_arms(table: Table, described: CampaignFile | None) -> Iterator[Proble
     row, stress = _middle(_shear_stress(table, rows, described), rows)
     size = conversion(unit, "lever_arm_mm")
     other = stress / size.factor if size is not None else np.nan
-    both = Message(
-        "S_f of this experiment is {stress:.4g} N/mm² if they are in mm, {other:.4g} in {unit}.",
-        stress=stress,
-        other=other,
-        unit=unit,
-    )
+    both = _both_readings("S_f", stress, other, "N/mm²", ("mm", unit))
     yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", both, unit, row)
 
 
@@ -245,6 +232,14 @@ def _middle(values: FloatArray, rows: list[int]) -> tuple[int, float]:
     finite = sorted((value, row) for value, row in zip(values.tolist(), rows, strict=True) if np.isfinite(value))
     value, row = finite[(len(finite) - 1) // 2] if finite else (float("nan"), rows[0])
     return row, value
+
+
+def _both_readings(quantity: str, value: float, other: float, result_unit: str, units: tuple[str, str]) -> Message:
+    return Message(
+        "{quantity} of this experiment is {value:.4g} {result_unit} if they are in {unit}, {other:.4g} in "
+        "{other_unit}.",
+        quantity=quantity, value=value, result_unit=result_unit, unit=units[0], other=other, other_unit=units[1],
+    )  # fmt: skip
 
 
 def _missing_unit(table: Table, column: str, values: str, effect: Message, unit: str, row: int = 0) -> Problem:

@@ -1,21 +1,19 @@
 """The store, a file or on a server: campaigns byte for byte, and journals (event sourcing) of those being entered."""
 
-from .attachments import (
-    Position,
-    attachments_of,
-    photo_entry,
-    position_entry,
-    write_campaign,
-)
 from .conflict import Conflict, Side
 from .export import (
     ExportedCampaign,
     FoundCampaign,
+    Position,
+    attachments_of,
     corrected_files,
     entered_files,
     export_corrected,
     export_entered,
     find_campaign,
+    photo_entry,
+    position_entry,
+    write_campaign,
 )
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry

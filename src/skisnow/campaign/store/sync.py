@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 from sqlalchemy import Connection, insert, select
 
@@ -168,8 +168,11 @@ class _Sync:
     def _find_conflicts(self) -> tuple[Conflict, ...]:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             open_ = list(self._open_conflicts(here, there))
-            names = names_of(here).all if open_ else {}
-        return tuple(replace(conflict, name=names.get(conflict.campaign, "")) for conflict in open_)
+            names = names_of(here) if open_ else Names({}, {})
+        return tuple(
+            replace(conflict, name=names.stored.get(conflict.campaign) or names.entered.get(conflict.campaign, ""))
+            for conflict in open_
+        )
 
     def _open_conflicts(self, here: Connection, there: Connection) -> Iterator[Conflict]:
         for id_ in shared_journals(here, there):
@@ -198,17 +201,11 @@ def _damage(store: Store, journal_id: str) -> str:
     return ""
 
 
-@dataclass(frozen=True, slots=True)
-class Names:
+class Names(NamedTuple):
     """Names by id of stored campaigns and of those in entry, without damaged ones."""
 
     stored: Mapping[str, str]
     entered: Mapping[str, str]
-
-    @property
-    def all(self) -> dict[str, str]:
-        """Names of stored campaigns and of campaigns in entry by id."""
-        return {**self.entered, **self.stored}
 
 
 def names_of(connection: Connection) -> Names:
@@ -221,18 +218,11 @@ def names_of(connection: Connection) -> Names:
 
 def same_names(here: Names, there: Names) -> Iterator[str]:
     """One sentence for each campaign from there that is new here and has the name of another campaign here."""
-    for what, of_here, of_there in (
-        ("stored campaigns", here.stored, there.stored),
-        ("campaigns in entry", here.entered, there.entered),
-    ):
-        met = {
-            (name, other, id_)
-            for id_, name in of_there.items()
-            if id_ not in of_here
-            for other, its_name in of_here.items()
-            if its_name == name
-        }
-        for name, other, id_ in sorted(met):
+    kinds = ("stored campaigns", "campaigns in entry")
+    for what, of_here, of_there in zip(kinds, here, there, strict=True):
+        new = {id_: name for id_, name in of_there.items() if id_ not in of_here}
+        pairs = [(name, other, id_) for id_, name in new.items() for other, known in of_here.items() if known == name]
+        for name, other, id_ in sorted(pairs):
             yield (
                 f"Two {what} are called {name!r}: {other}, which was here, and {id_} from there. "
                 "They are kept apart; give one another name if they are not the same."

@@ -21,7 +21,7 @@ from ...campaign.store import (
     photo_entry,
     position_entry,
 )
-from ...campaign.store.attachments import photo_of
+from ...campaign.store.export import photo_of
 from ...campaign.store.stored_tables import cell_of
 from ..elements import Words, add_items, button, field, folded
 from ..layout import heading
