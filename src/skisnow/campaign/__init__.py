@@ -2,14 +2,7 @@
 
 from .problems import QUALITY_FLAGS, AppliedCorrection, Problem, QualityFlag
 from .reading.campaign import campaign_of_files, check_campaign, read_campaign
-from .records import (
-    Campaign,
-    DensitySamples,
-    DropConeTests,
-    PenetrationSeries,
-    PenetrationTests,
-    ShearTests,
-)
+from .records import Campaign, DensitySamples, DropConeTests, PenetrationSeries, PenetrationTests, ShearTests
 from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
 from .screening import flag_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen

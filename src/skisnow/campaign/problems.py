@@ -90,26 +90,6 @@ MOST_ALIKE: Final = 10
 """Problems of one kind in one column that a terminal shows one by one."""
 
 
-def _group_unknown_names(problems: Iterable[Problem]) -> list[Problem]:
-    """Merge the problems of an unknown tool or plate in a file into one, with the number of its experiments."""
-    together: dict[object, list[Problem]] = {}
-    for number, problem in enumerate(problems):
-        name = (problem.code, problem.file, problem.value)
-        together.setdefault(name if problem.code in _NAMES else number, []).append(problem)
-    return [_combine(alike) for alike in together.values()]
-
-
-_NAMES: Final = ("unknown_tool", "unknown_plate")
-
-
-def _combine(alike: Sequence[Problem]) -> Problem:
-    first, more = alike[0], len(alike) - 1
-    where = Message(
-        "{experiment} and {count} more, up to row {row}", experiment=first.experiment, count=more, row=alike[-1].row
-    )
-    return replace(first, experiment=where) if more else first
-
-
 def _limited_lines(problems: Sequence[Problem]) -> Iterator[Message]:
     """One line for each problem; of many problems of a kind in a column the first ones and the number of others."""
     kinds = [(problem.severity, problem.code, problem.file, problem.column) for problem in problems]
@@ -146,7 +126,7 @@ def lines_of(problems: Iterable[Problem]) -> list[Message]:
             note = as_text if problem.code == "unknown_column" else problem.value
             files.setdefault(note or problem.code, []).append(problem.file)
     notes = [Message("{note} in {files}", note=note, files=list(dict.fromkeys(names))) for note, names in files.items()]
-    lines = list(_limited_lines(_group_unknown_names(problem for problem in every if problem.needs_action)))
+    lines = list(_limited_lines([problem for problem in every if problem.needs_action]))
     no_action = Message("note: no action is needed: {notes}.", notes=joined(notes, "; "))
     return [*lines, no_action] if notes else lines
 

@@ -134,13 +134,7 @@ class _Reading:
 
     def _refuse(self, line: int, column: str, value: str, allowed: str, action: str) -> NoReturn:
         problem = error(
-            "unreadable_file",
-            self._file,
-            row=line,
-            column=column or None,
-            value=value,
-            allowed=allowed,
-            action=action,
+            "unreadable_file", self._file, row=line, column=column or None, value=value, allowed=allowed, action=action
         )
         raise FieldDataError([problem])
 

@@ -162,10 +162,7 @@ def workbook_bytes(name: str) -> bytes:
     for template in TEMPLATES:
         sheet = book.create_sheet(template.form.name)
         _fill_sheet(
-            sheet,
-            tuple(template.example),
-            [tuple(template.example.values())],
-            notes=dict(template.explanations()),
+            sheet, tuple(template.example), [tuple(template.example.values())], notes=dict(template.explanations())
         )
     _fill_sheet(book.create_sheet(COLUMNS), ("heading", "column", "table"), [])
     stream = io.BytesIO()

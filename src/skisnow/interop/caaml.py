@@ -156,10 +156,7 @@ def _forces_xml(profile: ForceProfile) -> str:
 
 
 def _custom_data_xml(pit: SnowPit) -> Iterator[str]:
-    values = (
-        ("snowHardness", "N mm-3", pit.snow_hardness),
-        ("failureShearStress", "N mm-2", pit.failure_shear_stress),
-    )
+    values = (("snowHardness", "N mm-3", pit.snow_hardness), ("failureShearStress", "N mm-2", pit.failure_shear_stress))
     elements = "".join(_plate_value(name, unit, value) for name, unit, value in values if value is not None)
     if elements:
         yield _nested("customData", elements)

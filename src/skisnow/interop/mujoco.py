@@ -89,10 +89,7 @@ def _chain(ski: Ski, name: str, end: FloatArray) -> str:
         place = near, float(ski.at(near).base_height)
         opened += f'<body name="{name} {i}" pos="{place[0] - before[0]!r} 0 {place[1] - before[1]!r}">\n'
         before = place
-        for what, axis, along in (
-            ("bend", "0 1 0", at.bending_stiffness),
-            ("twist", "1 0 0", at.torsional_stiffness),
-        ):
+        for what, axis, along in (("bend", "0 1 0", at.bending_stiffness), ("twist", "1 0 0", at.torsional_stiffness)):
             stiffness = 1.0 / (abs(float(middle[i] - inner)) * float(np.mean(1.0 / along)))
             opened += f'<joint name="{name} {i} {what}" axis="{axis}" stiffness="{stiffness!r}" damping="0.0"/>\n'
         opened += _inertial(ski, near, far, place) + _box_xml(ski, near, far, place)

@@ -68,11 +68,7 @@ class Setting:
 
 
 def replay_of_run(
-    run: Run,
-    *,
-    title: str = "A simulated run",
-    track: ReplayTrack | None = None,
-    gates: npt.ArrayLike | None = None,
+    run: Run, *, title: str = "A simulated run", track: ReplayTrack | None = None, gates: npt.ArrayLike | None = None
 ) -> Replay:
     """The replay of a run.
 

@@ -302,11 +302,7 @@ def _grooves(scenario: Scenario, random: np.random.Generator) -> str:
     assert isinstance(slope, Plane)
     load = (sledge.mass + 2.0 * scenario.ski.mass) * scenario.gravity * math.cos(slope.angle) / 2.0
     answer = carve(
-        scenario.ski,
-        contact.snow,
-        edge_angle=sledge.edge_angle,
-        load=load,
-        unloading_ratio=contact.unloading_ratio,
+        scenario.ski, contact.snow, edge_angle=sledge.edge_angle, load=load, unloading_ratio=contact.unloading_ratio
     )
     deepest = float(np.max(np.asarray(answer.edge_depth)))
     depth = deepest * (1.0 - 1.0 / contact.unloading_ratio) / MM

@@ -164,8 +164,7 @@ def test_repeated_rows_are_listed_up_to_a_number(small: SmallCampaign) -> None:
     *_, row = small[DENSITY].splitlines()
     small[DENSITY] += f"{row}\n" * 5000
     problems = [each for each in small.check() if each.code == "repeated_row"]
-    assert len(problems) == 1001
-    assert sum(each.row is None and "4000" in str(each.value) for each in problems) == 1
+    assert len(problems) == 1000
 
 
 def records(data: bytes) -> list[tuple[int, list[str]]]:

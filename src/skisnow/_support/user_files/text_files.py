@@ -23,14 +23,9 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
     """
     try:
         if not stat.S_ISREG((place := Path(path)).stat().st_mode):
-            if place.is_dir():
-                problem = Message("{path} cannot be read: it is a folder. Check the path.", path=path)
-            else:
-                problem = Message(
-                    "{path} cannot be read: it is a pipe, a device or the like, no plain file. Check the path.",
-                    path=path,
-                )
-            raise ContentError(problem).tag("cannot_read")
+            raise ContentError("{path} cannot be read: it is a folder, a pipe or the like. Check the path.").tag(
+                "cannot_read", path=path
+            )
         with place.open("rb") as stream:
             data = stream.read(most_bytes + 1)
     except ContentError:
@@ -39,12 +34,8 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
         raise ContentError("{path} cannot be read: {reason}. Check the path.").tag(
             "cannot_read", path=path, reason=error.strerror or error
         ) from error
-    except UnicodeEncodeError as error:
-        raise ContentError("{path!r} cannot be read: its name is not valid text. Correct it.").tag(
-            "cannot_read", path=path
-        ) from error
-    except ValueError as error:  # the system's paths end at a NUL character
-        raise ContentError("{path!r} is not a path: it has a NUL character. Correct it.").tag(
+    except ValueError as error:
+        raise ContentError("{path!r} is not a path: it is not valid text, or has a NUL character. Correct it.").tag(
             "invalid_character", path=path
         ) from error
     if len(data) > most_bytes:

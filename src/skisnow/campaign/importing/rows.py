@@ -152,13 +152,7 @@ def _number(section: Section, row: int, choice: ColumnChoice, text: str, mark: s
         allowed = Message("a number with the decimal mark {mark}", mark=written)
         action = Message("Correct the cell, or exclude it with --ignore {place}.", place=place)
         dialogue.refuse(
-            "not_a_number",
-            sheet.name,
-            row=row + 1,
-            column=choice.heading,
-            value=text,
-            allowed=allowed,
-            action=action,
+            "not_a_number", sheet.name, row=row + 1, column=choice.heading, value=text, allowed=allowed, action=action
         )
         return ""
     value = float(plain.replace(",", "."))

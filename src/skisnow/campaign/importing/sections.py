@@ -10,14 +10,7 @@ from itertools import pairwise
 from typing import Final
 
 from ..reading.header import NO_UNIT
-from ..reading.headings import (
-    columns_by_synonym,
-    heading_words,
-    known_unit,
-    named_unit,
-    stated_column,
-    unit_of_column,
-)
+from ..reading.headings import columns_by_synonym, heading_words, known_unit, named_unit, stated_column, unit_of_column
 from ..reading.table_forms import TableForm
 from .answers import NONE, Answers
 from .sheets import FROM_NOTES, KINDS, Sheet, is_plain_number
@@ -214,11 +207,7 @@ def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
 
 
 def _make_section(
-    sheet: Sheet,
-    row: int,
-    columns: range,
-    rows_of_headings: int,
-    heads: Sequence[tuple[int, range, int]],
+    sheet: Sheet, row: int, columns: range, rows_of_headings: int, heads: Sequence[tuple[int, range, int]]
 ) -> Section:
     later = [other for other, group, _ in heads if other > row and set(group) & set(columns)]
     top = _row_texts(sheet, row, columns)

@@ -21,10 +21,7 @@ from ..reading.workbook_files import is_workbook
 _LETTERS: Final = 26
 HIDDEN: Final = "hidden"
 STRUCK: Final = "struck"
-EXCLUDED: Final = {
-    HIDDEN: Message("a hidden row, column or sheet"),
-    STRUCK: Message("a cell that is struck through"),
-}
+EXCLUDED: Final = {HIDDEN: Message("a hidden row, column or sheet"), STRUCK: Message("a cell that is struck through")}
 
 
 @dataclass(frozen=True, slots=True)

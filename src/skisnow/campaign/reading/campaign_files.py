@@ -134,11 +134,7 @@ class RawFiles:
         """Report an encoding other than UTF-8."""
         if foreign_encoding is None:
             return
-        action = (
-            Message("It was guessed; save as UTF-8 if letters look wrong in the report.")
-            if foreign_encoding == "Windows-1252"
-            else Message("It was read as such; save as UTF-8 if letters look wrong in the report.")
-        )
+        action = Message("It was read as such; save as UTF-8 if letters look wrong in the report.")
         allowed = Message("UTF-8, in the plain form")
         self.problems.append(
             warning("encoding", name, value=foreign_encoding, allowed=allowed, action=action, needs_action=False)

@@ -158,30 +158,20 @@ def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
 
 
 MOST_LISTED: Final = 1000
-"""Maximum number of repeated rows that are listed separately."""
+"""Maximum number of repeated rows that are listed."""
 
 
 def check_repeated_rows(table: Table) -> Iterator[Problem]:
-    """Warning of each row that equals an earlier one; above `MOST_LISTED` one warning with their number."""
+    """Warning of each row that equals an earlier one, up to `MOST_LISTED`."""
     names = [column.cells() for column in table.names.values()]
     numbers = [np.where(np.isfinite(column), column, -np.inf).tolist() for column in table.numbers.values()]
     first: dict[tuple[object, ...], int] = {}
     repeated = 0
-    allowed = Message("each measurement once")
     for index, row in enumerate(zip(*names, *numbers, *table.further.values(), strict=True)):
         earlier = first.setdefault(row, index)
-        if earlier == index:
-            continue
-        repeated += 1
-        if repeated > MOST_LISTED:
-            continue
-        action = Message("It counts again in the mean of its site: remove the row if it was pasted twice.")
-        yield table.warning(index, "repeated_row", None, f"the same as row {int(table.row[earlier])}", allowed, action)
-    if repeated > MOST_LISTED:
-        yield warning(
-            "repeated_row",
-            table.form.file,
-            value=f"{repeated - MOST_LISTED} more repeated rows",
-            allowed=allowed,
-            action=Message("They count again in the means of their sites: remove rows that were pasted twice."),
-        )
+        if earlier != index and repeated < MOST_LISTED:
+            repeated += 1
+            allowed = Message("each measurement once")
+            action = Message("It counts again in the mean of its site: remove the row if it was pasted twice.")
+            value = f"the same as row {int(table.row[earlier])}"
+            yield table.warning(index, "repeated_row", None, value, allowed, action)

@@ -42,8 +42,11 @@ class TomlValues:
         """Path of a key of this table."""
         return f"{self.path}.{key}" if self.path else key
 
-    def refuse(self, key: str, allowed: str, action: str, *, code: str = "bad_toml", value: object = _MISSING) -> None:
-        """Report an error of a key (default: with its value)."""
+    def refuse(
+        self, key: str, allowed: str, action: str = "", *, code: str = "bad_toml", value: object = _MISSING
+    ) -> None:
+        """Report an error of a key (default: with its value, and the advice to correct the key)."""
+        action = action or Message("Correct {key}.", key=key)
         shown = self.values.get(key) if value is _MISSING else value
         text = None if shown is None else shown_value(shown, 200, str)
         self.problems.append(
@@ -62,11 +65,8 @@ class TomlValues:
         if value is None:
             return None
         if not isinstance(value, str) or not (value.strip() or blank_allowed):
-            self.refuse(
-                key,
-                Message("a text, in quotes") if blank_allowed else Message("a text that is not blank, in quotes"),
-                Message("Correct {key}.", key=key),
-            )
+            blank = Message("a text, in quotes")
+            self.refuse(key, blank if blank_allowed else Message("a text that is not blank, in quotes"))
             return None
         return value.strip() or None
 
@@ -75,7 +75,7 @@ class TomlValues:
         value = self.values.get(key, [])
         items = [value] if isinstance(value, str) else value
         if not isinstance(items, list) or not all(isinstance(item, str) for item in items):
-            self.refuse(key, Message("a text or a list of texts, in quotes"), Message("Correct {key}.", key=key))
+            self.refuse(key, Message("a text or a list of texts, in quotes"))
             return ()
         return tuple(item.strip() for item in items if item.strip())
 
@@ -89,11 +89,7 @@ class TomlValues:
         key = quantity.name
         values = self.values.get(key, [])
         if not isinstance(values, list):
-            self.refuse(
-                key,
-                Message("a list of numbers such as [50, 100, 150]"),
-                Message("Put the numbers of {key} in brackets.", key=key),
-            )
+            self.refuse(key, Message("a list of numbers in brackets, such as [50, 100, 150]"))
             return ()
         checked = (self._checked(value, one) for one, value in quantity.single_quantities(values))
         return tuple(value for value in checked if value is not None)
@@ -117,11 +113,7 @@ class TomlValues:
         """A table below this one; empty if missing or invalid."""
         value = self.values.get(key, {})
         if not isinstance(value, dict):
-            self.refuse(
-                key,
-                Message("a table, begun by the line [{key}]", key=key),
-                Message("Write [{key}] above its keys.", key=key),
-            )
+            self.refuse(key, Message("a table, begun by the line [{key}] above its keys", key=key))
             value = {}
         return TomlValues(self.file, value, self.path_of(key), self.problems)
 
@@ -129,11 +121,7 @@ class TomlValues:
         """Tables of a list; empty if missing or invalid."""
         values = self.values.get(key, [])
         if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
-            self.refuse(
-                key,
-                Message("tables, each begun by the line [[{key}]]", key=key),
-                Message("Write [[{key}]] above each one's keys.", key=key),
-            )
+            self.refuse(key, Message("tables, each begun by the line [[{key}]] above its keys", key=key))
             return []
         paths = (f"{self.path_of(key)}[{place}]" for place in range(1, len(values) + 1))
         return [TomlValues(self.file, value, path, self.problems) for value, path in zip(values, paths, strict=True)]
@@ -147,7 +135,7 @@ class TomlValues:
             try:
                 values[key] = quantities[key].in_range(self.values[key])
             except ParameterError:
-                self.refuse(key, quantities[key].allowed, Message("Correct {key}.", key=key), code="bad_toml")
+                self.refuse(key, quantities[key].allowed)
         return build_declared(owner, values)
 
     def refuse_misspelt(self, allowed_keys: Iterable[str]) -> None:

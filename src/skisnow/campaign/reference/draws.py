@@ -13,14 +13,7 @@ import numpy as np
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.units import DEGREE, MM
 from ...snow.published.moessner_2013 import failure_shear_stress_from_angle, failure_shear_stress_from_density
-from ..records import (
-    DensitySamples,
-    DropConeTests,
-    PenetrationTests,
-    ShearTests,
-    TurningReadings,
-    UnloadingReadings,
-)
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
 from . import design
 from .design import ReferenceNoise
 

@@ -17,14 +17,7 @@ from .export import (
 )
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
-from .replayed import (
-    Reading,
-    ReplayedCampaign,
-    ReplayedTest,
-    campaign_files,
-    campaign_in_memory,
-    replay_journal,
-)
+from .replayed import Reading, ReplayedCampaign, ReplayedTest, campaign_files, campaign_in_memory, replay_journal
 from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 from .stored_tables import StoredTable, stored_tables

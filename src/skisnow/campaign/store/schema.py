@@ -89,10 +89,7 @@ campaign_file = Table(
 """``path``: relative to the campaign's folder, parts joined by ``/``."""
 
 journal = Table(
-    "journal",
-    metadata,
-    Column("id", String(12), primary_key=True),
-    Column("begun_at", String(20), nullable=False),
+    "journal", metadata, Column("id", String(12), primary_key=True), Column("begun_at", String(20), nullable=False)
 )
 """A campaign that is still being entered. Its state is replayed from its entries alone (event sourcing)."""
 

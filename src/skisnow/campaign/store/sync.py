@@ -19,14 +19,7 @@ from .conflict import Conflict, Side, entries_by_uid, entry_index, open_conflict
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
 from .journal import entered_name
-from .journal_entry import (
-    DESCRIPTION,
-    NewEntry,
-    insert_entries,
-    next_sequence,
-    number_of_uid,
-    write_entry,
-)
+from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
 from .rows import (
     ID_DIGITS,
     StoredCampaign,

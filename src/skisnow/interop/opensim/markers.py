@@ -164,12 +164,7 @@ class BootMarkers:
 
 
 def boots_of_markers(
-    markers: Markers,
-    left: BootMarkers,
-    right: BootMarkers,
-    *,
-    up: Literal["y", "z"] = "y",
-    slope_angle: float = 0.0,
+    markers: Markers, left: BootMarkers, right: BootMarkers, *, up: Literal["y", "z"] = "y", slope_angle: float = 0.0
 ) -> Boots:
     """Poses of both boots in the slope's axes.
 
