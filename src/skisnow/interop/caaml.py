@@ -9,7 +9,6 @@ from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.caaml import OWN_NAMESPACE
@@ -205,17 +204,8 @@ def _require_choice(what: str, value: str, allowed: frozenset[str] | tuple[str, 
 
 def _timestamp(time: str) -> str:
     if not _TIME.fullmatch(time):
-        problem = (
-            Message(
-                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and {time!r} is not such a "
-                "time: give it with --time",
-                time=time,
-            )
-            if time
-            else Message(
-                "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and the pit has no time: "
-                "give it with --time"
-            )
-        )
-        raise ParameterError(problem).tag("missing")
+        raise ParameterError(
+            "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10; the pit has {time!r}: give it "
+            "with --time"
+        ).tag("missing", time=time)
     return f"{time}:00" if re.fullmatch(r"[^T]+T\d\d:\d\d", time) else time

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from ..._support.messages import Message, joined
+from ..._support.messages import Message, joined, template
 from ..problems import Problem, error, warning
 from .headings import (
     Headings,
@@ -131,12 +131,14 @@ def _missing_column_problem(form: TableForm, name: str, unknown: Sequence[str], 
 
 
 def _advise_mapping(heading: str, column: str) -> Message:
-    return Message(
-        "Did you mean {column!r}? Rename {heading!r} if its numbers have the unit of this column, or map it under "
-        "[columns] in campaign.toml, which converts them.",
-        heading=heading,
-        column=column,
-    )
+    if not unit_of_column(column):
+        advice = template("Did you mean {column!r}? Rename {heading!r}, or map it under [columns] in campaign.toml.")
+    else:
+        advice = template(
+            "Did you mean {column!r}? Rename {heading!r} if its numbers have the unit of this column, or map it under "
+            "[columns] in campaign.toml, which converts them."
+        )
+    return Message(advice, heading=heading, column=column)
 
 
 def _unknown_error(form: TableForm, name: str, header: Header) -> Problem:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..reading.campaign import read_description
 from ..reading.campaign_files import CampaignFiles, RawFiles
 from ..reading.header import split_header
 from ..reading.headings import UnitConversion
-from ..reading.table_forms import BRANCH, BRANCHES, TABLES, TableForm
+from ..reading.table_forms import BRANCH, BRANCHES, TABLES, TableForm, allowed_words
 from ..reading.tables import TableReading
 from .rows import damage_error
 
@@ -109,16 +109,6 @@ _PROBLEMS: Final = {
 NAME: Final = Message("Enter a name.")
 BRANCH_WORD: Final = Message("Enter loading or unloading, or leave it empty.")
 SHORT_LINE: Final = Message("Enter one line of at most {most} characters.", most=LONGEST_TEXT)
-ANY_NUMBER: Final = Message("Enter a number.")
-AT_LEAST: Final = template("Enter a number of {low:g} or more.")
-ABOVE: Final = template("Enter a number above {low:g}.")
-BETWEEN: Final = {
-    (False, False): template("Enter a number from {low:g} to {high:g}."),
-    (False, True): template("Enter a number from {low:g} to below {high:g}."),
-    (True, False): template("Enter a number above {low:g} and up to {high:g}."),
-    (True, True): template("Enter a number above {low:g} and below {high:g}."),
-}
-"""By whether the lowest and the highest number are excluded."""
 
 
 class CellError(ParameterError):
@@ -173,10 +163,5 @@ def _number_cell(rule: Quantity, text: str, conversion: UnitConversion) -> str:
 
 def _number_fix(rule: Quantity, conversion: UnitConversion) -> Message:
     """Sentence with the allowed numbers, in the unit of the text."""
-    low, high = rule.lowest, rule.highest
-    if high < math.inf:
-        limits = {"low": conversion.revert(low), "high": conversion.revert(high)}
-        return Message(BETWEEN[rule.above, rule.below], **limits)
-    if low > -math.inf:
-        return Message(ABOVE if rule.above else AT_LEAST, low=conversion.revert(low))
-    return ANY_NUMBER
+    low, high = (conversion.revert(limit) if math.isfinite(limit) else limit for limit in (rule.lowest, rule.highest))
+    return Message("Enter {allowed}.", allowed=allowed_words(replace(rule, lowest=low, highest=high)))

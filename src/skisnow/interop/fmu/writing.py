@@ -53,13 +53,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     With a skier the poses of its boots at the end of each step go in, too: the importing program controls them.
 
     scenario: scenario without boots.file.
-    path: path that ends in .fmu.
-    fmi: version of the standard, 2 (2.0) or 3 (3.0).
-    Returns: path of the file.
-    Raises ParameterError: the path does not end in .fmu, this machine has no library, or a file moves the boots.
-    Raises OutputError: the file cannot be written.
-
-    See the page docs/how-to/other-programs.md.
+    path, fmi: as in `write_contact_fmu`, like the errors.
     """
     _require(path, fmi)
     return _write_fmu(sledge_model(scenario, step=STEP["sledge"]), Path(path), fmi)
