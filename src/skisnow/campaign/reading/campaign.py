@@ -9,7 +9,7 @@ from typing import Final
 
 from ..._support.csv_text import decode
 from ..._support.errors import FieldDataError
-from ..._support.messages import Message
+from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
 from ..records import Campaign
 from ..smet import CampaignWeather
@@ -180,6 +180,9 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _RawCa
         action = Message(
             "Name the folder of campaign.toml and the tables, or a workbook (.xlsx) that contains all of them."
         )
+        if folder.is_file() and folder.suffix.lower() == ".toml":
+            used = Message("A ski or a scenario is checked where it is used: by carve --ski FILE, by simulate FILE.")
+            action = joined([action, used])
         value = Message("a file") if folder.exists() else Message("nothing")
         nowhere = error(
             "unreadable_file", str(folder), value=value, allowed=Message("a folder that exists"), action=action
