@@ -349,9 +349,9 @@ def test_two_rejected_fields_are_listed_in_german_each_by_its_own_sentences(ente
         page.fill(name, text)
     page.press("Speichern")
     assert page.refusals() == [
-        "Kantwinkel (°): „90.5“ ist nicht erlaubt. Eine Zahl über 0 und bis 90 eingeben.",
-        "Tiefe (mm) ist leer. Eine Zahl ab 0 eingeben.",
-        "Moment (N m): „Density; it is blank“ ist nicht erlaubt. Eine Zahl ab 0 eingeben.",
+        "Kantwinkel (°): „90.5“ ist nicht erlaubt. Erlaubt: eine Zahl über 0 bis 90.",
+        "Tiefe (mm) ist leer. Erlaubt: eine Zahl ab 0.",
+        "Moment (N m): „Density; it is blank“ ist nicht erlaubt. Erlaubt: eine Zahl ab 0.",
     ]
     assert page.refusals() == page.faults("Kantwinkel (°)", "Tiefe (mm)", "Moment (N m)")
     assert entered.history() == []
