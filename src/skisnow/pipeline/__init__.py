@@ -167,8 +167,10 @@ def _simulate_with_contact(contact: str, turn: Scenario, say: Callable[[str], No
 
 
 def _require_inputs(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
-    if unloading_ratio is not None:  # elastic snow is the other contact
-        require_range("unloading_ratio", unloading_ratio, ELASTIC, above=True)
+    if unloading_ratio is not None and not unloading_ratio > ELASTIC:
+        raise ParameterError(
+            "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
+        ).tag("out_of_range", unloading_ratio=unloading_ratio)
     if shear_displacement is not None:
         require_range("shear_displacement", shear_displacement, 0.0, above=True)
     require_range("runs", runs, FEWEST)
