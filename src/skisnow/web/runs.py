@@ -132,7 +132,7 @@ class Runs:
         jobs = []
         for place in self.folder.glob(f"*/{JOB}"):
             with contextlib.suppress(ContentError):  # the folder is being removed or damaged
-                jobs.append(read_record(place, Job, only_known=False))
+                jobs.append(read_record(place, Job))
         return sorted(jobs, key=lambda job: job.asked_at, reverse=True)
 
     def ask(
