@@ -154,6 +154,7 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
 
 
 def _unpack_value(data: bytes, offset: int, form: str) -> Any:
+    """Value at an offset in a `struct` format, big-endian; a tuple if the format has several values."""
     values = struct.unpack_from(f">{form}", data, offset)
     return values[0] if len(values) == 1 else values
 

@@ -92,7 +92,7 @@ class _NodesAndLines(NamedTuple):
 
 @functools.lru_cache(maxsize=16)
 def _mesh(station: bytes, clamp_length: float, elements: int) -> _NodesAndLines:
-    """Mesh on a ski with these stations, the same for all skis of its lengths."""
+    """Nodes of the beam, and interpolation of tables at these stations to its stations and Gauss points."""
     rows = np.frombuffer(station)
     node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
     return _NodesAndLines(

@@ -196,6 +196,7 @@ class SeriesFit:
         return _Line(slope, readings.penetration_depth - depth - self._d[series], self._reading_weights(slope))
 
     def _reading_weights(self, slope: FloatArray) -> FloatArray:
+        """Inverse variances (1/m²) of the depths, 0 for readings without contact; slope: de/d ln V (m)."""
         load2 = self._g[self._readings.series] ** 2 * self._load2
         return self._seen / (self._depth2 + slope**2 * (load2 + self._per_reading(self._spreads.scatter2)))
 

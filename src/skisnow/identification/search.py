@@ -141,13 +141,14 @@ class Search:
         """
         try:
             self.best = self._differentiate(start)
-            return None if self.best is None else self._iterate(self.best)
+            return None if self.best is None else self._iterate_to_end(self.best)
         except KeyboardInterrupt:
             if self.best is None:
                 raise
             return replace(self.best, state="interrupted")
 
-    def _iterate(self, here: SearchState) -> SearchState:
+    def _iterate_to_end(self, here: SearchState) -> SearchState:
+        """Take steps until they converge, gain nothing or are `most_rounds`; the final state."""
         damping = _FIRST_DAMPING
         while here.rounds <= self.options.most_rounds:
             step = self._full_step(here)
@@ -250,7 +251,7 @@ class Search:
         self.middle = state
         apart = float(np.sqrt(np.mean((first - state.residuals - state.jacobian @ step) ** 2)))
         self.best = replace(state, place=state.place + step, residuals=first)
-        return self._iterate(self.best), apart
+        return self._iterate_to_end(self.best), apart
 
     def noise(self, state: SearchState) -> float:
         """Standard deviation of a residual: one where it is stated, else estimated."""

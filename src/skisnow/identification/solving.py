@@ -124,6 +124,7 @@ class _Solver:
         return any(observation.kind == "track" for observation in self.problem.observations)
 
     def _make_search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
+        """Search of a problem; about: prefix of its progress; final: with the accurate solver and tolerance."""
         residuals, options = partial(problem.residuals, final=final), search_options(problem, self.plan)
         if final:
             options = replace(options, tolerance=_LAST_TOLERANCE)
@@ -136,6 +137,7 @@ class _Solver:
         )
 
     def _search_best_start(self) -> SearchState:
+        """Search from every start to its end; the final state with the lowest cost."""
         best: SearchState | None = None
         for number, start in enumerate(self._run_starts()):
             about = f"start {number + 1} of {self.plan.starts}: " if self.plan.starts > 1 else ""

@@ -116,8 +116,8 @@ def quickest_line(
     spread
         Standard deviation of the first batch over the range of each number, above 0 to 1.
     settled
-        Ends a search before its evaluations are used up, where all values of its last batch, with the surrogate of its
-        last two, lie within so much (s).
+        Ends a search before its evaluations are used up: where all values of its last batch lie within so much (s),
+        with the surrogate where three batches in a row have not lowered the least value by so much.
     window, step
         Number of gates whose turns are searched at once; the turns before them stay as found, then the window moves by
         `step` gates; None: all at once. The whole course is searched first, with equal turns if they begin equal: turns

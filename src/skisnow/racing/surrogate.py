@@ -270,7 +270,7 @@ class SurrogateSearch:
 
     count: evaluations after which no new batch begins.
     kinds: numbers of a turn.
-    spread: size of the first evaluations: half of the box about the start is twice as much.
+    spread: half width of the first box in shares of each range, at most 0.25; twice as much for equal turns.
     settled: above 0: the search ends when three batches in a row have not lowered the minimum by this much.
     """
 
@@ -293,14 +293,14 @@ class SurrogateSearch:
             self.minimise_equal_turns(start, math.ceil(ALIKE * self.count))
         else:
             self.batches.evaluate([np.asarray(start, float)])
-        self._narrow(np.eye(len(start)), len(start) // 2, self.count, 1)
+        self._search_along(np.eye(len(start)), len(start) // 2, self.count, 1)
         return self.batches.least
 
     def minimise_equal_turns(self, start: FloatArray, count: int) -> Evaluated:
         """Minimum of about `count` evaluations in which all turns have the same numbers, as at the start."""
         directions = np.tile(np.eye(self.kinds), (len(start) // self.kinds, 1))
         self.batches.evaluate([np.asarray(start, float)])
-        self._narrow(directions, self.first_of(self.kinds), count, 0)
+        self._search_along(directions, self.first_of(self.kinds), count, 0)
         return self.batches.least
 
     def starts_with_equal_turns(self, start: FloatArray) -> bool:
@@ -313,8 +313,8 @@ class SurrogateSearch:
         """Evaluations before the surrogate is used."""
         return 2 * numbers + 2
 
-    def _narrow(self, directions: FloatArray, drawn: int, count: int, phase: int) -> None:
-        """Continue until `count` evaluations, with steps along directions (n, m) from the best point."""
+    def _search_along(self, directions: FloatArray, drawn: int, count: int, phase: int) -> None:
+        """Search from the best point along the m columns of `directions` (n, m); no new batch after `count`."""
         box, size = min(2.0 * self.spread, BOX[1]) / (1 + phase), directions.shape[1]
         shares = qmc.LatinHypercube(size, rng=np.random.default_rng([*self.seed, phase])).random(drawn)
         begin = self._steps_along(directions, np.array(self.batches.least.place))

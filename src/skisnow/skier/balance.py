@@ -165,7 +165,7 @@ class BalancedSkier:
         return apexes_of(course, self.skier, (start.x, start.y), gravity)
 
     def _stand_on(self, x: float, y: float) -> tuple[FloatArray, Gravity]:
-        """Normal of the snow (3,) and gravity there."""
+        """Normal of the snow (3,), and gravity plus the acceleration by its bend at the last recorded speed."""
         slope, gravity = self.scenario.slope, self.scenario.gravity
         if isinstance(slope, Plane):
             self._on_plane = self._on_plane or Gravity(gravity * math.cos(slope.angle), gravity * math.sin(slope.angle))

@@ -302,9 +302,9 @@ class Posture:
         self.rates[AHEAD] = later
 
     def _step_hips(self, torque: float, seen: Seen, dt: float) -> None:
-        """By torque, damping and the snow's moment on the boots, each turning its own inertia about the normal.
+        """Step the hips' angle about the leaning body by dt (s): by torque (N m), damping, the snow's moment on boots.
 
-        The hips turn about the leaning body, so their rate is the one about the normal over the cosine of the lean.
+        Their rate is the one about the snow's normal over the cosine of the lean.
         """
         most, aside = self.skier.hip_torque, float(self.numbers[ASIDE])
         apart, leg = seen.body_rate - seen.turn_rate, math.hypot(aside, self.height)

@@ -107,7 +107,7 @@ def centre(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def standardised(predictors: FloatArray, *, intercept: bool) -> Columns:
-    """Centre (only with an intercept) and scale predictors (n, k); with an intercept the first column is one."""
+    """Divide predictors (n, k) by their root mean square; with an intercept centre them first and put ones before."""
     n, k = predictors.shape
     shifted, middle = centre(predictors) if intercept and k else (predictors, np.zeros(k))
     length = np.sqrt(np.mean(shifted**2, axis=0)) if k else np.zeros(0)

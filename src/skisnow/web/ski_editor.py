@@ -222,7 +222,7 @@ def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> EditedSki:
             typed_number(Message("{cells} at {station:.3f} m", cells=CELLS[column], station=station[i]), text)
             * COLUMNS[column].factor
         )
-    source = ski.source if edit.is_file else f"edited in the lab ({_in_words(edit, station)}) from: {ski.source}"
+    source = ski.source if edit.is_file else f"edited in the lab ({_edit_in_words(edit, station)}) from: {ski.source}"
     own = ski.name if edit.is_file else f"{ski.name}, edited"
     edited = edited_ski(ski, SkiEdit(station, factors, wanted), name=name or own, source=source)
     shown = values_at(edited, station)
@@ -234,7 +234,8 @@ def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> EditedSki:
     return EditedSki(edited, warned, tuple(station.tolist()), {**cells, **edit.cells})
 
 
-def _in_words(edit: SkiEditInput, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+def _edit_in_words(edit: SkiEditInput, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+    """List of the edits for the source of the ski: factors other than 1, typed values with stations (m)."""
     scaled = [f"{FACTORS[key].text()} × {text}" for key, text in edit.factors.items() if typed_number(key, text) != 1.0]
     values = [f"{CELLS[column].text()} {text} at {station[i]:.3f} m" for (column, i), text in edit.cells.items()]
     return "; ".join([*scaled, *values])

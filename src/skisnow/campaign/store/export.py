@@ -93,10 +93,11 @@ def position_entry(file: str, test: str, position: Position, *, who: str = "") -
     return _attachment_entry(file, test, cells, who)
 
 
-def _attachment_entry(file: str, test: str, cells: dict[str, str], who: str) -> NewEntry:
-    name = f"{file.removesuffix('.csv')} {test} {uuid4().hex[:8]}"  # unique: two laptops never write the same one
+def _attachment_entry(table: str, test: str, cells: dict[str, str], who: str) -> NewEntry:
+    """Journal entry that attaches cells, a photo or a position, to a test of a table."""
+    name = f"{table.removesuffix('.csv')} {test} {uuid4().hex[:8]}"  # unique: two laptops never write the same one
     return NewEntry(
-        action="add", file=ATTACHMENTS, test=name, cells={"table": file, "test": test, **cells}, position=0, who=who
+        action="add", file=ATTACHMENTS, test=name, cells={"table": table, "test": test, **cells}, position=0, who=who
     )
 
 

@@ -126,6 +126,7 @@ def find_entry_damage(connection: Connection) -> Iterator[Finding]:
 
 
 def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
+    """All journal entries by sequence, with values as bytes: invalid text does not stop the check."""
     columns = journal_entry.c
     if is_file(connection):
         query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))

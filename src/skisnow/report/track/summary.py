@@ -234,6 +234,7 @@ def rounded(value: float | None, exact: float, digits: int = 3) -> str:
 
 
 def _distance_lines(title: str, distances: Mapping[str, Any], length: float, exact: float) -> Iterator[str]:
+    """Lines on the distances of two tracks; length: of the measured one (m); exact: accuracy of places (m)."""
     yield f"{title}: {distances['definition']}"
     if distances["max_m"] is None:
         yield f"  none: {distances['reason']}"
