@@ -125,6 +125,8 @@ _WORDS: Final = (
     "ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy",
     "nodata_value", "nodata",
 )  # fmt: skip
+_SAME: Final = {"cellsize": ("dx", "dy"), "dx": ("cellsize",), "dy": ("cellsize",)}
+"""Words that state what another one does."""
 _ENTRY: Final = re.compile(r"\s*([A-Za-z_]+)[ \t]+(\S+)")
 
 
@@ -167,6 +169,11 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
     at = 0
     while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:
         word = entry[1].lower()
+        for other in sorted(header.keys() & {word, *_SAME.get(word, ())}):
+            line = text.count("\n", 0, entry.start(1)) + 1
+            raise ParameterError("{path}, line {line}: {key} and {other} state the same. Remove one of them.").tag(
+                "repeated", path=path, line=line, key=word, other=other
+            )
         try:
             header[word] = float(entry[2])
         except ValueError:
@@ -190,7 +197,10 @@ def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
 
 def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: float) -> float:
     """The middle of the first cell."""
-    middle = header.get(f"{axis}llcenter", header.get(f"{axis}llcorner", math.nan) + size / 2.0)
+    by_corner = header.get(f"{axis}llcorner", math.nan) + size / 2.0
+    middle = header.get(f"{axis}llcenter", by_corner)
+    if abs(by_corner - middle) > ROUNDED * size:
+        _refuse(path, f"{axis}llcorner and {axis}llcenter contradict each other. Remove one of them")
     if not math.isfinite(middle):
         _refuse(path, f"The header has no finite {axis}llcorner and no {axis}llcenter. Add the one in m")
     return middle
