@@ -32,7 +32,7 @@ _KINDS: Final[dict[str, tuple[type[Any], type[Any]]]] = {
     "ski": (str, str), "variables": (dict, str), "conditions": (list, dict), "goals": (list, dict),
     "constraints": (list, dict), "monotone": (list, str),
 }  # fmt: skip
-"""Type of the value of each key that is no number, and of its items."""
+"""By key without a number: the type of its value, and of the value's items."""
 _WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest", *SKI_FACTORS)
 
 

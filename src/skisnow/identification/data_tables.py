@@ -46,7 +46,7 @@ def _read_rows(path: Path, columns: tuple[str, ...], further: tuple[str, ...]) -
 
 
 def _column(rows: list[CsvRow], quantity: Quantity) -> FloatArray:
-    """Numbers (n,) in the unit of the column's name; NaN where an optional quantity has none."""
+    """Numbers (n,) in the unit of the column's name; NaN for empty cells of an optional quantity."""
     name, values = quantity.name, np.full(len(rows), np.nan)
     for place, row in enumerate(rows):
         if quantity.needed or row.cells.get(name):
