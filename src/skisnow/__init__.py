@@ -42,8 +42,6 @@ The public names are loaded when first used. Functions are verbs; classes are th
     The fastest line through a course.
 ``SnowField``, ``SnowContact``, ``Runner``, ``ContactForces``
     History-dependent snow, and contact of user-defined bodies with it.
-``regress``
-    Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 ``SkisnowError``, ``ParameterError``, ``FieldDataError``, ``FitError``, ``SolverError``, ``StoreError``, ``OutputError``
     Errors; all derive from `SkisnowError` and have a `code`.
 ``RangeWarning``, ``FitWarning``, ``ModelLimitWarning``
@@ -106,7 +104,6 @@ if TYPE_CHECKING:
     from .snow import published_names as snow_names
     from .snow import published_snow as load_snow
     from .snow import snow_from_results as read_snow
-    from .statistics import regress
     from .studies import Study, StudyTable, read_study
     from .studies import run_study as study
     from .track.course import Course, CourseResult, Gate, course_names, read_course
@@ -178,7 +175,6 @@ __all__ = [
     "read_snow",
     "read_study",
     "read_track",
-    "regress",
     "rest",
     "results_dict",
     "run_batch",
@@ -239,7 +235,6 @@ _PACKAGES = {
     "simulation.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
-    "statistics": ("regress",),
     "studies": ("Study", "StudyTable", "read_study", "run_study"),
     "comparison": ("Comparison", "compare_tracks"),
     "track.course": ("Course", "CourseResult", "Gate", "course_names", "read_course"),

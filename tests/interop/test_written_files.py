@@ -98,7 +98,7 @@ def test_a_recording_says_where_and_when_or_that_it_does_not_know(tmp_path: Path
     source = tmp_path / "S31M0067_20190302.pnt"
     source.write_bytes(plain_snow(1.0, air_mm=1.0, snow_mm=2.0))
     profile = read_snow_micro_pen(source)
-    unknown = replace(profile, latitude_deg=None, longitude_deg=None, date_in_file_name=None, clock=None)
+    unknown = replace(profile, latitude_deg=None, longitude_deg=None, recorded_on=None)
     found = []
     for each in (profile, unknown):
         lines = write_snowex_force(each, tmp_path / "r.csv").read_text(encoding="utf-8").splitlines()

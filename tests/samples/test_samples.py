@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from skisnow import check_campaign, read_ski, read_track, track_summary
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import OutputError
-from skisnow.campaign import read_density_layers, read_snow_micro_pen
+from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.caaml import read_caaml
 from skisnow.campaign.smet import read_smet
 from skisnow.cli import main
@@ -67,7 +67,6 @@ def test_tracks_of_a_day(samples: Path, capsys: pytest.CaptureFixture[str], monk
 
 def test_snow_is_read(samples: Path) -> None:
     assert len(read_caaml(samples / "pit.caaml").layers) == 2
-    assert len(read_density_layers(samples / "densities.csv")) == 8
     assert float(np.nanmax(read_smet(samples / "weather.smet").fields["TA"])) == pytest.approx(272.0, abs=1.0)
     force = read_snow_micro_pen(samples / "snow_micro_pen.PNT").force
     assert float(force[:7000].max()) < 0.05

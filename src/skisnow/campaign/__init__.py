@@ -6,13 +6,11 @@ from .records import Campaign, DensitySamples, DropConeTests, PenetrationSeries,
 from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
 from .screening import flag_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
-from .snow_pit import DensityLayers, read_density_layers
 
 __all__ = [
     "QUALITY_FLAGS",
     "AppliedCorrection",
     "Campaign",
-    "DensityLayers",
     "DensitySamples",
     "DropConeTests",
     "PenetrationSeries",
@@ -27,7 +25,6 @@ __all__ = [
     "check_campaign",
     "flag_problems",
     "read_campaign",
-    "read_density_layers",
     "read_snow_micro_pen",
     "reference_campaign",
     "screen_penetration",

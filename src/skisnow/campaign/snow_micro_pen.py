@@ -32,11 +32,8 @@ _MICROMETRE: Final = 1e-6
 
 # name, offset in bytes, format for struct
 _FIELDS: Final = (
-    ("firmware", 0, "h"),
-    ("announced_samples", 2, "i"),
     ("sample_distance_mm", 6, "f"),
     ("force_per_count", 10, "f"),
-    ("force_offset", 18, "h"),
     ("clock", 20, "6h"),
     ("speed_mm_per_s", 64, "f"),
     ("comment_length", 152, "h"),
@@ -45,81 +42,39 @@ _FIELDS: Final = (
     ("latitude_deg", 264, "f"),
     ("longitude_deg", 268, "f"),
     ("height_cm", 272, "f"),
-    ("dilution_of_precision", 276, "f"),
     ("hemisphere", 280, "2s"),
-    ("satellites", 282, "h"),
-    ("fix_mode", 284, "h"),
     ("samples", 358, "i"),
     ("tip_diameter_um", 376, "i"),
-    ("overload_N", 380, "h"),
-    ("instrument_serial", 384, "h"),
     ("instrument_length_mm", 386, "h"),
-    ("sensor_serial", 392, "20s"),
-    ("amplifier_serial", 412, "20s"),
 )
-_UNCHANGED: Final = (
-    "force_per_count", "force_offset", "announced_samples", "dilution_of_precision", "satellites", "fix_mode",
-    "overload_N", "firmware", "instrument_serial",
-)  # fmt: skip
-"""Fields of the header that a profile has under the same name and in the same unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class SnowMicroPenProfile:
-    """A recording: force against depth, and the header.
+    """A recording: force against depth, and the quantities of its header that skisnow uses.
 
-    file, name, comment: name of the file; name of the recording and comment in its header.
+    name, comment: name and comment in the header.
     depth: distance of the tip from its start in the air above the snow, at each sample (m). The file has neither the
         position of the surface nor the reason for the end of the recording.
-    force: force on the tip (N): counts times `force_per_count`, without an offset.
-    sample_distance: distance from sample to sample (m).
-    force_per_count: N per count of the analogue-digital converter.
-    force_offset: from the header; according to the makers unused, 0 in practice.
-    announced_samples: a second, larger sample count in the header. The recording has ``len(force)`` samples; the rest
-        of the file is padding.
-    clock: time by the instrument's clock, UTC; None if it is not a date. It can be wrong by years, see
-        `date_in_file_name`.
-    date_in_file_name: date from the first eight digits in the file's name that are a date (20200208), or None.
+    force: force on the tip (N): counts of the converter times the force of one, without an offset.
+    sample_distance, tip_diameter: distance from sample to sample, and diameter of the tip (m).
+    recorded_on: day from the first eight digits in the file's name that are a date (20200208), else of the instrument's
+        clock, which can be wrong by years; None without a date.
     latitude_deg, longitude_deg: WGS 84, north and east positive: the header has magnitudes and the flags N or S, E or
         W. None where flags or numbers are not valid, or both are 0.
     height: height above sea level (m), or None.
-    dilution_of_precision, satellites, fix_mode: values of the satellite receiver, from the header.
-    speed: speed of the tip (m/s).
-    tip_diameter, instrument_length: in m.
-    overload_N: force at which the instrument stops.
-    firmware, instrument_serial, sensor_serial, amplifier_serial: as in the header.
     """
 
-    file: str
     name: str
     comment: str
     depth: FloatArray = field(repr=False)
     force: FloatArray = field(repr=False)
     sample_distance: float
-    force_per_count: float
-    force_offset: int
-    announced_samples: int
-    clock: datetime | None
-    date_in_file_name: date | None
+    tip_diameter: float
+    recorded_on: date | None
     latitude_deg: float | None
     longitude_deg: float | None
     height: float | None
-    dilution_of_precision: float
-    satellites: int
-    fix_mode: int
-    speed: float
-    tip_diameter: float
-    instrument_length: float
-    overload_N: int
-    firmware: int
-    instrument_serial: int
-    sensor_serial: str
-    amplifier_serial: str
-
-    @property
-    def recorded_on(self) -> date | None:
-        """Day of the recording: the file name's, else the clock's."""
-        return self.date_in_file_name or (self.clock.date() if self.clock else None)
 
 
 def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
@@ -197,23 +152,16 @@ def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> Snow
     latitude, longitude = _position_or_none(header)
     height = header["height_cm"]
     return SnowMicroPenProfile(
-        file=file,
         name=_text(header["name"]),
         comment=_text(header["comment"][: max(header["comment_length"], 0)]),
         depth=np.arange(counts.size) * distance,
         force=counts * header["force_per_count"],
         sample_distance=distance,
-        clock=_recording_time(header["clock"]),
-        date_in_file_name=_date_in_file_name(file),
+        tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
+        recorded_on=_date_in_file_name(file) or _clock_date(header["clock"]),
         latitude_deg=latitude,
         longitude_deg=longitude,
         height=None if height == _NO_HEIGHT_CM or not np.isfinite(height) else height * CM,
-        speed=header["speed_mm_per_s"] * MM,
-        tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
-        instrument_length=header["instrument_length_mm"] * MM,
-        sensor_serial=_text(header["sensor_serial"]),
-        amplifier_serial=_text(header["amplifier_serial"]),
-        **{name: header[name] for name in _UNCHANGED},
     )
 
 
@@ -222,10 +170,9 @@ def _text(raw: bytes) -> str:
     return raw.split(b"\0", 1)[0].decode("latin-1").strip()
 
 
-def _recording_time(fields: tuple[int, ...]) -> datetime | None:
-    year, month, day, hour, minute, second = fields
+def _clock_date(fields: tuple[int, ...]) -> date | None:
     try:
-        return datetime(year, month, day, hour, minute, second, tzinfo=UTC)
+        return datetime(*fields, tzinfo=UTC).date()  # type: ignore[arg-type,misc]
     except ValueError:
         return None
 

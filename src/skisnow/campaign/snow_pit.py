@@ -1,24 +1,11 @@
-"""Records of snow pits: place, time, layers, densities, temperatures, results of plate tests; CSV of pit densities."""
+"""Records of snow pits: place, time, layers, densities, temperatures, results of plate tests."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Final
 
-import numpy as np
-
-from .._support.arrays import FloatArray, IntArray
-from .._support.errors import FieldDataError
-from .._support.messages import Message
-from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
-from ..parameters import Quantity
-from .problems import Problem, error
-from .reading.campaign_files import CampaignFiles, RawFiles
-from .reading.columns import Table
-from .reading.table_forms import TableForm
-from .reading.tables import read_table
+from .._support.arrays import FloatArray
+from .._support.units import CM, Facts, Shown, amount
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,89 +101,3 @@ class SnowPit(Shown):
         height = "not known" if self.snow_height is None else amount(self.snow_height / CM, "cm")
         counts = f"{len(self.layers)} layers, {len(self.densities)} densities, {len(self.temperatures)} temperatures"
         return Facts(f"{self.name!r}, {self.time or 'no time'}: {counts}, snow height {height}")
-
-
-_NO_NOTE: Final = "-9999"
-
-
-@dataclass(frozen=True, slots=True)
-class DensityLayers:
-    """Density samples of snow pits, in the order of the file.
-
-    pit: name of the pit.
-    top, bottom: limits of the layer, heights above the ground or ice below the snow (m); top > bottom.
-    snow_density: ρ in kg/m³.
-    note: the column NOTES, or ``""``.
-    kind: kind of snow in the file, or ``""``.
-    row: line of the file; the header is line 1.
-    problems: warnings of reading, such as unknown columns.
-    """
-
-    pit: tuple[str, ...]
-    top: FloatArray
-    bottom: FloatArray
-    snow_density: FloatArray
-    note: tuple[str, ...]
-    kind: tuple[str, ...]
-    row: IntArray
-    problems: tuple[Problem, ...] = field(default=(), repr=False)
-
-    def __len__(self) -> int:
-        """Count the samples."""
-        return len(self.pit)
-
-    @property
-    def thickness(self) -> FloatArray:
-        """Thickness of each layer (m)."""
-        return self.top - self.bottom
-
-
-def read_density_layers(path: Path) -> DensityLayers:
-    """Read a CSV of pit densities.
-
-    Raises FieldDataError: the file has errors; the exception has all problems with their rows and columns.
-    """
-    path = Path(path)
-    files = RawFiles(CampaignFiles(path.parent))
-    table = read_table(_layers_form(path.name), files)
-    if path.name in files.absent:
-        allowed, action = Message("a file of this name"), Message("Check the file's name and folder.")
-        files.problems.append(error("unreadable_file", path.name, allowed=allowed, action=action))
-    if table is not None and not table.absent:
-        files.problems.extend(_layers_upside_down(table))
-    errors = [problem for problem in files.problems if problem.severity == "error"]
-    if errors or table is None:
-        raise FieldDataError(errors)
-    notes = table.names["NOTES"].cells()
-    return DensityLayers(
-        pit=table.names["ID"].cells(),
-        top=table.numbers["TOP"] * CM,
-        bottom=table.numbers["BOTTOM"] * CM,
-        snow_density=table.numbers["RHO"],
-        note=tuple("" if note == _NO_NOTE else note for note in notes),
-        kind=table.names["TYPE"].cells(),
-        row=table.row,
-        problems=tuple(files.problems),
-    )
-
-
-def _layers_form(file: str) -> TableForm:
-    return TableForm(
-        file=file,
-        key="ID",
-        names=("ID",),
-        numbers=(
-            Quantity("TOP", "height of the layer's top, cm", lowest=0.0, above=True),
-            Quantity("BOTTOM", "height of its bottom, cm", lowest=0.0),
-            Quantity("RHO", "density, kg/m³", lowest=0.0, above=True, highest=ICE_DENSITY),
-        ),
-        optional=("NOTES", "TYPE"),
-    )
-
-
-def _layers_upside_down(table: Table) -> Iterator[Problem]:
-    top, bottom = table.numbers["TOP"], table.numbers["BOTTOM"]
-    for row in np.flatnonzero(top <= bottom).tolist():
-        allowed = Message("a height above the layer's BOTTOM, {bottom:g} cm", bottom=bottom[row])
-        action = Message("Heights count upwards; exchange the two if the file counts from the surface down.")
-        yield table.error(row, "out_of_range", "TOP", f"{top[row]:g}", allowed, action)

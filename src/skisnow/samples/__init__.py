@@ -112,10 +112,6 @@ _HEADER_BYTES: Final = 512
 def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
     """Name and content of each snow sample."""
     yield "pit.caaml", caaml_text(sample_pit())
-    rows = ["ID,TOP,BOTTOM,RHO,NOTES,TYPE"]
-    for pit in ("P1", "P2"):
-        rows += [f"{pit},{top},{top - 10},{random.normal(450.0, 20.0):.1f},-9999,N" for top in range(120, 80, -10)]
-    yield "densities.csv", "\n".join((*rows, ""))
     yield "weather.smet", smet_text(_weather_series(random))
     yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
 

@@ -5,10 +5,9 @@ from .clusters import ClusterIntervals, cluster_intervals
 from .combined_uncertainty import expanded_factor, percentile_interval, resampling_counts, welch_satterthwaite
 from .f_tests import NestedTest, nested_f_test, tests_per_group
 from .linear import LinearFit, VarianceShares, linear_fit, variance_shares
-from .regress import Regress, RegressStatistics, regress
 
 __all__ = [
-    "ClusterIntervals", "LinearFit", "NestedTest", "Regress", "RegressStatistics", "VarianceShares",
+    "ClusterIntervals", "LinearFit", "NestedTest", "VarianceShares",
     "cluster_intervals", "expanded_factor", "linear_fit", "nested_f_test", "non_negative_fits", "percentile_interval",
-    "regress", "resampling_counts", "tests_per_group", "variance_shares", "welch_satterthwaite",
+    "resampling_counts", "tests_per_group", "variance_shares", "welch_satterthwaite",
 ]  # fmt: skip

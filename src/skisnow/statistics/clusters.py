@@ -15,15 +15,7 @@ from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.units import CONFIDENCE
 from .combined_uncertainty import expanded_factor
-from .least_squares import (
-    Factorisation,
-    as_predictors,
-    as_response,
-    centre,
-    factorise,
-    standardised,
-    warn_if_ill_conditioned,
-)
+from .least_squares import LeastSquares, solve_least_squares
 
 _WHOLLY = 1e-9
 """A direction of which a cluster holds all but this share is known only from that cluster."""
@@ -73,32 +65,23 @@ def cluster_intervals(response: npt.ArrayLike, predictors: npt.ArrayLike, cluste
     >>> round(float(found.standard_errors[0]) ** 2 * 3, 9), round(float(found.degrees_of_freedom[0]), 9)
     (7.0, 2.0)
     """
-    y = as_response(response)
-    X = as_predictors(predictors, len(y))
     labels = np.asarray(clusters)
-    if labels.shape != y.shape:
+    if labels.shape != np.shape(response):
         raise ParameterError("clusters have shape {shape}; one of them is needed for each of {n_y} responses").tag(
-            "wrong_shape", shape=str(labels.shape), n_y=len(y)
+            "wrong_shape", shape=str(labels.shape), n_y=np.size(response)
         )
     names, cluster = np.unique(labels, return_inverse=True)
-    columns = standardised(X, intercept=True)
-    warn_if_ill_conditioned(columns.scaled)
-    fit = factorise(columns)
-    shifted, middle = centre(y)
-    coefficients, residuals = fit.solve(shifted)
-    coefficients[0] += middle
+    fit = solve_least_squares(response, predictors)
     n, p = fit.orthogonal.shape
     errors, dof = np.full(p, np.nan), np.full(p, np.nan)
     if len(names) > 1 and n > p:
-        errors, dof = _bias_reduced(fit, residuals, cluster, len(names))
+        errors, dof = _bias_reduced(fit, cluster, len(names))
     half = expanded_factor(dof, CONFIDENCE) * errors
-    intervals = np.stack((coefficients - half, coefficients + half), axis=-1)
-    return ClusterIntervals(intervals, errors, dof, len(names), coefficients)
+    intervals = np.stack((fit.coefficients - half, fit.coefficients + half), axis=-1)
+    return ClusterIntervals(intervals, errors, dof, len(names), fit.coefficients)
 
 
-def _bias_reduced(
-    fit: Factorisation, residuals: FloatArray, cluster: npt.NDArray[np.intp], G: int
-) -> tuple[FloatArray, FloatArray]:
+def _bias_reduced(fit: LeastSquares, cluster: npt.NDArray[np.intp], G: int) -> tuple[FloatArray, FloatArray]:
     """Standard errors and degrees of freedom; in the coordinates of Q, where XᵀX is one."""
     Q = fit.orthogonal
     share = _cluster_sums(Q[:, :, None] * Q[:, None, :], cluster, G)
@@ -107,7 +90,7 @@ def _bias_reduced(
     alone = left < _WHOLLY
     root = np.where(alone, 0.0, 1.0 / np.sqrt(np.where(alone, 1.0, left)))
     adjust = (vector * root[:, None, :]) @ np.swapaxes(vector, 1, 2)
-    score = np.einsum("gij,gj->gi", adjust, _cluster_sums(Q * residuals[:, None], cluster, G))
+    score = np.einsum("gij,gj->gi", adjust, _cluster_sums(Q * fit.residuals[:, None], cluster, G))
     L = fit.loadings
     lost = _determined_by_one(L, vector, alone)
     errors = np.sqrt(np.sum((score @ L.T) ** 2, axis=0))

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.units import CONFIDENCE, ShownFields
+from .combined_uncertainty import expanded_factor
 from .f_tests import f_ratio, f_tail
-from .least_squares import as_predictors, as_response, centre, factorise, spread, standardised, warn_if_ill_conditioned
+from .least_squares import solve_least_squares
 
 
 @dataclass(frozen=True, repr=False)
@@ -22,14 +23,12 @@ class LinearFit(ShownFields):
 
     Attributes
     ----------
-    n, n_parameters, rank
-        Observations n, coefficients p with the intercept, rank of the design (equal to p).
+    n, n_parameters
+        Observations n, coefficients p with the intercept.
     coefficients, standard_errors
         Shape (p,), the intercept first.
     intervals
         Shape (p, 2): low and high, by Student's t with n - p degrees of freedom.
-    covariance
-        Covariance of the coefficients, shape (p, p).
     residuals
         Observed minus fitted, shape (n,).
     sse, rmse, rmse_dof
@@ -39,16 +38,14 @@ class LinearFit(ShownFields):
     F, p
         F test against the intercept-only model, p the chance of an F as large; NaN without a predictor, and for n = p.
 
-    Results that need n > p are NaN for n = p: standard_errors, intervals, covariance, rmse_dof, F, p.
+    Results that need n > p are NaN for n = p: standard_errors, intervals, rmse_dof, F, p.
     """
 
     n: int
     n_parameters: int
-    rank: int
     coefficients: FloatArray
     standard_errors: FloatArray
     intervals: FloatArray
-    covariance: FloatArray
     residuals: FloatArray
     sse: float
     rmse: float
@@ -80,16 +77,28 @@ def linear_fit(response: npt.ArrayLike, predictors: npt.ArrayLike) -> LinearFit:
     >>> [round(float(b), 12) for b in fit.coefficients], round(fit.sse, 12)
     ([1.166666666667, 1.5], 0.166666666667)
     """
-    y = as_response(response)
-    X = as_predictors(predictors, len(y))
-    columns = standardised(X, intercept=True)
-    warn_if_ill_conditioned(columns.scaled)
-    design = factorise(columns)
-    shifted, middle = centre(y)
-    coefficients, residuals = design.solve(shifted)
-    coefficients[0] += middle
-    r2, F, tail = _explained(shifted, residuals, len(coefficients))
-    return LinearFit(**spread(coefficients, residuals, design, CONFIDENCE), rank=len(coefficients), r2=r2, F=F, p=tail)
+    solved = solve_least_squares(response, predictors)
+    coefficients, residuals = solved.coefficients, solved.residuals
+    n, p = solved.orthogonal.shape
+    sse = float(residuals @ residuals)
+    rmse_dof = float(np.sqrt(sse / (n - p))) if n > p else float("nan")
+    errors = rmse_dof * np.linalg.norm(solved.loadings, axis=1)
+    half = expanded_factor(float(n - p), CONFIDENCE) * errors
+    r2, F, tail = _explained(solved.shifted, residuals, p)
+    return LinearFit(
+        n=n,
+        n_parameters=p,
+        coefficients=coefficients,
+        standard_errors=errors,
+        intervals=np.stack((coefficients - half, coefficients + half), axis=-1),
+        residuals=residuals,
+        sse=sse,
+        rmse=float(np.sqrt(sse / n)),
+        rmse_dof=rmse_dof,
+        r2=r2,
+        F=F,
+        p=tail,
+    )
 
 
 def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[float, float, float]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 import stat
 from pathlib import Path
-from typing import Final, Literal, TypeAlias, get_args
+from typing import Final, Literal, TypeAlias
 
-from .._support.errors import ParameterError
 from .._support.messages import Message
 from .projection import GeodeticPoint
 from .readers.conversion import build_track
@@ -19,7 +18,7 @@ from .readers.rtklib import HEADER, read_rtklib
 from .readers.table import read_table
 from .readers.text import decode_text
 from .readers.ubx import SYNC, has_places, read_ubx
-from .track import FASTEST, GAP_FACTOR, Track
+from .track import Track
 
 TrackFormat: TypeAlias = Literal["csv", "gpx", "tcx", "fit", "nmea", "ubx", "rtklib"]
 SUFFIXES: Final[dict[str, TrackFormat]] = {
@@ -40,15 +39,8 @@ _UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 _UBX_NAVIGATION: Final = SYNC + b"\x01\x07"
 
 
-def read_track(
-    path: str | Path,
-    *,
-    origin: GeodeticPoint | None = None,
-    kind: TrackFormat | None = None,
-    fastest: float = FASTEST,
-    gap_factor: float = GAP_FACTOR,
-) -> Track:
-    """Read a track: CSV, GPX, TCX, FIT, NMEA, UBX or RTKLIB's ``.pos``.
+def read_track(path: str | Path, *, origin: GeodeticPoint | None = None) -> Track:
+    """Read a track: CSV, GPX, TCX, FIT, NMEA, UBX or RTKLIB's ``.pos``, recognised by its content, else by its ending.
 
     Parameters
     ----------
@@ -57,12 +49,6 @@ def read_track(
     origin
         Point at which the plane of projection touches the earth and x, y, z are zero (default: the origin in the file,
         else the first point with a fix).
-    kind
-        Format of the file (default: recognised by its content, else by its ending).
-    fastest : m/s
-        Horizontal speed above which a step between points is flagged as impossible.
-    gap_factor
-        A time step longer than this many usual ones is flagged as a gap.
 
     Returns
     -------
@@ -75,8 +61,6 @@ def read_track(
     FieldDataError
         The file cannot be read, is empty or damaged, has an impossible value, no place at all, or times that run
         backwards. The error names file, row, column, value, allowed values and a remedy.
-    ParameterError
-        ``fastest`` or ``gap_factor`` is not above zero, or ``kind`` is not a format.
 
     See Also
     --------
@@ -88,17 +72,9 @@ def read_track(
     ----------
     The page docs/files/track.md.
     """
-    for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
-        if not value > 0.0:
-            raise ParameterError("{name} is {value:g}; it must be above 0").tag("out_of_range", name=name, value=value)
-    if kind is not None and kind not in get_args(TrackFormat):
-        raise ParameterError("unknown track format {kind!r}; allowed are {allowed}").tag(
-            "unknown_name", kind=kind, allowed=list(get_args(TrackFormat))
-        )
     path = Path(path)
     data = _read_bytes(path)
-    recording = _read_recording(data, path.name, kind or recognise_format(data, path.suffix))
-    return build_track(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
+    return build_track(_read_recording(data, path.name, recognise_format(data, path.suffix)), origin=origin)
 
 
 def recognise_format(data: bytes, suffix: str) -> TrackFormat:

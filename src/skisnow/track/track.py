@@ -188,8 +188,6 @@ def point_flags(
     fix: BoolArray,
     negative_speed: BoolArray,
     *,
-    fastest: float = FASTEST,
-    gap_factor: float = GAP_FACTOR,
     solution: SolutionArray | None = None,
     segment: IntArray | None = None,
     rounded: BoolArray | None = None,
@@ -201,9 +199,6 @@ def point_flags(
     place: (n, 3) m, places; NaN if missing.
     fix: (n,) bool, True if the receiver had a fix.
     negative_speed: (n,) bool, True if the recorded speed was below zero.
-    fastest: m/s, horizontal speed above which a step is impossible.
-    gap_factor: a time step longer than this many medians of the steps above zero is a gap; the point after it is
-        flagged.
     solution: (n,) or None, kind of solution of each place, as in `Track`.
     segment: (n,) or None, number of the segment of each point. A segment that continues the one before, at most 1.5
         usual intervals later and at a possible speed, is not flagged: some programs begin a segment for each lap.
@@ -215,8 +210,8 @@ def point_flags(
     repeated[1:] = np.diff(time) == 0.0
     sure = np.flatnonzero(placed & ~repeated)
     jump, impossible = np.zeros(len(time), bool), np.zeros(len(time), bool)
-    jumped, stepped = _impossible_points(time[sure], place[sure, :2], fastest)
-    apart = _segment_starts(time, place, sure, segment, fastest)
+    jumped, stepped = _impossible_points(time[sure], place[sure, :2])
+    apart = _segment_starts(time, place, sure, segment)
     jump[sure[jumped]] = True
     impossible[sure[stepped]] = True
     jump &= ~apart
@@ -229,7 +224,7 @@ def point_flags(
         "rounded_time": none.copy() if rounded is None else rounded,
         "not_finite": none.copy() if not_finite is None else not_finite,
         "new_segment": apart,
-        "gap": _after_gap(time, gap_factor) & ~apart,
+        "gap": _after_gap(time) & ~apart,
         "jump": jump,
         "impossible_step": impossible,
         "negative_speed": negative_speed,
@@ -237,34 +232,33 @@ def point_flags(
     }
 
 
-def _after_gap(time: FloatArray, factor: float) -> BoolArray:
+def _after_gap(time: FloatArray) -> BoolArray:
+    """True for points after a time step longer than `GAP_FACTOR` medians of the steps above zero."""
     steps = np.diff(time)
     after = np.zeros(len(time), bool)
     if np.any(steps > 0.0):
-        after[1:] = steps > factor * np.median(steps[steps > 0.0])
+        after[1:] = steps > GAP_FACTOR * np.median(steps[steps > 0.0])
     return after
 
 
-def _segment_starts(
-    time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None, fastest: float
-) -> BoolArray:
+def _segment_starts(time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None) -> BoolArray:
     """First points (n,) bool of segments that do not continue the one before."""
     apart = np.zeros(len(time), bool)
     if segment is None or len(sure) < 2:
         return apart
     steps = np.diff(time[sure])
     lengths = np.hypot(*np.diff(place[sure, :2], axis=0).T)
-    continued = (steps <= _CONTINUED * np.median(steps)) & (lengths <= fastest * steps)
+    continued = (steps <= _CONTINUED * np.median(steps)) & (lengths <= FASTEST * steps)
     apart[sure[1:][(np.diff(segment[sure]) != 0) & ~continued]] = True
     return apart
 
 
-def _impossible_points(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
+def _impossible_points(time: FloatArray, place: FloatArray) -> tuple[list[int], list[int]]:
     """Numbers of the points that jump out and back, and of the other points reached at an impossible speed."""
     lengths = np.hypot(*np.diff(place, axis=0).T)
-    fast = lengths > fastest * np.diff(time)
+    fast = lengths > FASTEST * np.diff(time)
     last = len(time) - 1
-    jumps = _jumps(time, place, lengths, fastest)
+    jumps = _jumps(time, place, lengths)
     if last > 1 and fast[0] and not fast[1] and 1 not in jumps:
         jumps.insert(0, 0)  # the first point alone is far from all that follow
     if last > 1 and fast[-1] and last - 1 not in jumps:
@@ -274,11 +268,11 @@ def _impossible_points(time: FloatArray, place: FloatArray, fastest: float) -> t
     return jumps, steps
 
 
-def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray, fastest: float) -> list[int]:
+def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray) -> list[int]:
     """Inner points with an impossible path through them and a possible path past them of less than half the length."""
     over = lengths[:-1] + lengths[1:]
     past = np.hypot(*(place[2:] - place[:-2]).T)
-    most = fastest * (time[2:] - time[:-2])
+    most = FASTEST * (time[2:] - time[:-2])
     jumps: list[int] = []
     for point in (np.flatnonzero((over > most) & (past <= most) & (past < 0.5 * over)) + 1).tolist():
         if not jumps or jumps[-1] != point - 1:  # a good point between two jumps looks like one

@@ -17,7 +17,6 @@ from skisnow.campaign.importing.answers import Answers, read_template
 from skisnow.campaign.importing.proposal import propose
 from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
-from skisnow.campaign.snow_pit import read_density_layers
 from skisnow.campaign.templates import workbook_bytes
 from skisnow.cli import campaign
 from skisnow.interop.caaml import write_caaml
@@ -49,7 +48,6 @@ fields           = timestamp TA RH VW
 
 2026-02-03T14:00  +1.5  60   5.5
 """
-_DENSITY = b"ID,TOP,BOTTOM,RHO,NOTES,TYPE\n1S1,100,90,250,-,a\n1S1,90,80,310,-,a\n2S2,60,50,199,x,b\n"
 _CORRECTIONS = (
     "file,experiment,row,column,old,new,who,when,why\n"
     "penetration.csv,{pen},2,depth_mm,{depth},1.2,A,2026-02-03,misread\n"
@@ -187,5 +185,4 @@ READERS = (
     single_file(
         "20260203.pnt", _recording(), read_snow_micro_pen, BINARY, "campaign.snow_micro_pen:read_snow_micro_pen"
     ),
-    single_file("densities.csv", _DENSITY, read_density_layers, TABLE, "campaign.snow_pit:read_density_layers"),
 )

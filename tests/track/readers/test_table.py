@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow._support.errors import FieldDataError, ParameterError
+from skisnow._support.errors import FieldDataError
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
 from skisnow.track.track import Track
@@ -311,13 +311,6 @@ def test_zeros_of_a_device_without_speeds(tmp_path: Path) -> None:
 
 def test_origin_on_earth_needs_places_on_earth(tmp_path: Path) -> None:
     assert "local metres only" in refused(tmp_path, LOCAL, origin=GeodeticPoint(46.0, 7.0))
-
-
-def test_arguments(tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match="fastest"):
-        read(tmp_path, LOCAL, fastest=0.0)
-    with pytest.raises(ParameterError, match="format 'kml'"):
-        read(tmp_path, LOCAL, kind="kml")
 
 
 def test_no_such_file_and_a_folder(tmp_path: Path) -> None:

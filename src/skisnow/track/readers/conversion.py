@@ -11,18 +11,12 @@ import numpy as np
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.messages import Message
 from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
-from ..track import FASTEST, GAP_FACTOR, Track, point_flags
+from ..track import Track, point_flags
 from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
 from .text import spread_times
 
 
-def build_track(
-    recording: Recording,
-    *,
-    origin: GeodeticPoint | None = None,
-    fastest: float = FASTEST,
-    gap_factor: float = GAP_FACTOR,
-) -> Track:
+def build_track(recording: Recording, *, origin: GeodeticPoint | None = None) -> Track:
     """Convert a recording to a track: validate it, project it about its origin, and compute flags.
 
     Raises FieldDataError: there is no point, no point has a place, times run backwards, a number is out of range, or an
@@ -44,8 +38,6 @@ def build_track(
         place,
         fix,
         negative,
-        fastest=fastest,
-        gap_factor=gap_factor,
         solution=solution,
         segment=recording.segment,
         rounded=rounded,
