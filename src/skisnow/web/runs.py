@@ -13,18 +13,17 @@ import os
 import re
 import secrets
 import sys
-import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
-from typing import Any, ClassVar, Final, Literal, NamedTuple, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, outcome_words, template
 from .._support.staging import write_file
-from .._support.user_files import ContentError, read_json, read_record
+from .._support.user_files import ContentError, read_record
 from ..simulation.simulated_run import REMEDIES
 
 NamedFile: TypeAlias = tuple[str, bytes]
@@ -41,8 +40,8 @@ _PAUSE_S: Final = 0.3
 class Job:
     """A simulation: name of its folder, scenario, changed keys, time of the request (UTC), state.
 
-    ``given``: inputs that were chosen by name, in words. ``took_s``: time from start to report of a finished job.
-    ``language``: language of the report. ``title``: name for people, which can be changed. ``points`` of a study.
+    ``given``: inputs that were chosen by name, in words. ``language``: language of the report. ``title``: name for
+    people, which can be changed. ``points`` of a study.
     """
 
     name: str
@@ -52,7 +51,6 @@ class Job:
     state: State = "waiting"
     said: str = ""
     given: str = ""
-    took_s: float = 0.0
     language: str = ENGLISH
     title: str = ""
     points: int = 0
@@ -219,7 +217,6 @@ class Runs:
     async def _run_job(self, job: Job) -> None:
         self._keep(replace(job, state="running"))
         self._running, self.progress = job.name, "starting"
-        begun = time.monotonic()
         self._process = await asyncio.create_subprocess_exec(
             *COMMAND,
             *self._command(job),
@@ -234,7 +231,7 @@ class Runs:
         cancelled = self._cancelling == job.name
         self._process, self._running, self._cancelling, self.progress = None, "", "", ""
         if not self._ended:
-            ended = await self._ended_as(job, last, time.monotonic() - begun, cancelled=cancelled)
+            ended = await self._ended_as(job, last, cancelled=cancelled)
             renamed = self._find_job(job.name)
             self._keep(ended if renamed is None else replace(ended, title=renamed.title))
 
@@ -242,11 +239,6 @@ class Runs:
         """Arguments of the command line for a job."""
         changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
         return ["simulate", job.scenario, *changes, "--language", job.language, "--out", str(self.folder / job.name)]
-
-    async def _ended_as(self, job: Job, last: str, took_s: float, *, cancelled: bool) -> Job:
-        """Job with its state after the end of its process, given the last message."""
-        over = self._finished_job(job, last, cancelled=cancelled)
-        return replace(over, took_s=took_s if over.state == "done" else 0.0)
 
     async def _follow_progress(self, process: asyncio.subprocess.Process) -> str:
         last = ""
@@ -257,8 +249,8 @@ class Runs:
                 self.progress = last
         return last[-LAST_WORDS:]
 
-    def _finished_job(self, job: Job, last: str, *, cancelled: bool) -> Job:
-        """Job with its final state and a sentence about it in the language of its request."""
+    async def _ended_as(self, job: Job, last: str, *, cancelled: bool) -> Job:
+        """Job with its state after the end of its process, and a sentence about it in the language of its request."""
         summary = self.folder / job.name / "summary.json"
         with in_language(job.language):
             if not summary.is_file():
@@ -280,71 +272,7 @@ class Runs:
         """Store a job."""
         write_file(self.folder / job.name / JOB, json.dumps(asdict(job), ensure_ascii=False, indent=1))
 
-    def estimated_s(self, values: Mapping[str, Any]) -> float | None:
-        """Estimated time of a run (s) with values of its scenario by key; None if they do not determine its end."""
-        simulated = simulated_s(values)
-        if simulated is None:
-            return None
-        runs = self._last_run_times()
-        around = sum(run.took - run.wall for run in runs) / len(runs) if runs else AROUND_S
-        return self.slowness(values.get("solver.method")) * simulated + around
-
-    def slowness(self, method: object) -> float:
-        """Ratio of computing time to simulated time of the last runs with this method."""
-        alike = [run for run in self._last_run_times() if run.method == method]
-        return sum(run.wall for run in alike) / sum(run.simulated for run in alike) if alike else SLOWNESS
-
-    def _last_run_times(self) -> list[_RunTime]:
-        return [run for job in self.jobs() if (run := _run_time(self.folder, job)) is not None][:LOOKED_AT]
-
 
 def new_name(what: str, time_utc: datetime) -> str:
     """Unique name of a folder: time (UTC), subject, random digits."""
     return f"{time_utc:%Y-%m-%d-%H%M%S}-{re.sub(r'[^A-Za-z0-9-]', '-', what)}-{secrets.token_hex(2)}"
-
-
-SLOWNESS: Final = 1.0  # ratio of computing time to simulated time before the first run (laptop of 2025)
-AROUND_S: Final = 8.0  # time for start, files and report before the first run (s)
-LOOKED_AT: Final = 5
-_NEVER_S: Final = 1e9  # maximum simulated time (s) with an estimate
-
-
-def duration_words(seconds: float) -> str:
-    """Rounded duration in words.
-
-    >>> duration_words(42.0), duration_words(600.0), duration_words(20_000.0)
-    ('40 s', '10 min', '6 h')
-    """
-    if seconds < 90.0:
-        return f"{max(5, 5 * round(seconds / 5))} s"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 120 else f"{round(minutes / 60)} h"
-
-
-def simulated_s(values: Mapping[str, Any]) -> float | None:
-    """Simulated time (s): the duration, or the time for the length at the start speed if it is shorter."""
-    duration, length, speed = (values.get(key) for key in ("run.duration_s", "run.length_m", "start.speed_m_per_s"))
-    ends = [float(duration)] if duration else []
-    if length and speed:
-        ends.append(float(length) / float(speed))
-    return min((end for end in ends if 0.0 < end < _NEVER_S), default=None)  # typed values can be "inf" or "nan"
-
-
-class _RunTime(NamedTuple):
-    """Times of a finished run (s): its process, its computation, and the simulated time."""
-
-    took: float
-    wall: float
-    simulated: float
-    method: str
-
-
-def _run_time(folder: Path, job: Job) -> _RunTime | None:
-    if not job.took_s:
-        return None
-    try:
-        summary = read_json(folder / job.name / "summary.json")
-        method = str(summary["scenario"]["solver"]["method"])
-        return _RunTime(job.took_s, float(summary["wall_s"]), float(summary["simulated_s"]), method)
-    except (ContentError, KeyError, TypeError, ValueError):
-        return None

@@ -9,11 +9,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
-from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import ENGLISH, Message, in_language, joined, outcome_words
@@ -22,7 +21,7 @@ from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
 from ..studies import Study, StudyTable
 from .page_requests import hidden_folder
-from .runs import AROUND_S, JOB, Job, Runs, duration_words, new_name, simulated_s
+from .runs import JOB, Job, Runs, new_name
 from .study_fields import CARVE, MOST_POINTS, STUDY, TABLE, StudyQuestion
 from .uploads import files_below
 from .words import replaced
@@ -127,9 +126,8 @@ class Studies(Runs):
         figure = ["--language", job.language, "--figure", str(folder / FIGURE)] if job.scenario == CARVE else []
         return ["study", str(folder / STUDY), *by, *here, *figure]
 
-    async def _ended_as(self, job: Job, last: str, took_s: float, *, cancelled: bool) -> Job:
+    async def _ended_as(self, job: Job, last: str, *, cancelled: bool) -> Job:
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)
-        job = replace(job, took_s=job.took_s + took_s)
         if (folder / TABLE).is_file():
             counts = await asyncio.to_thread(self._outcome_counts, job.name, job.language)
             return replace(job, state="done", said=counts)
@@ -154,24 +152,6 @@ class Studies(Runs):
         points = Message("{points} points: {outcomes}.", points=sum(counts.values()), outcomes=joined(every, "; "))
         return points.text(language)
 
-    def estimate_words(self, runs: Runs, points: int, method: str, unit: float) -> str:
-        """Number of points and estimated time in words.
-
-        method: method of the solver; "" for a carved turn.
-        """
-        if not unit:
-            return Message("{points} points.", points=points)
-        seconds = points * unit * (runs.slowness(method) if method else 1.0)
-        if self.elsewhere:
-            return Message(
-                "{points} points, about {took} of one core, shared by the workers of {elsewhere}.",
-                points=points,
-                took=duration_words(seconds),
-                elsewhere=self.elsewhere,
-            )
-        took = duration_words(seconds / self.workers + AROUND_S)
-        return Message("{points} points. Takes about {duration_words}.", points=points, duration_words=took)
-
 
 def _finished(partial: Path) -> int:
     """Number of finished points in a file of an interrupted study."""
@@ -191,14 +171,3 @@ def _without_folder(folder: Path, message: str) -> str:
     if not isinstance(message, Message):
         return message.replace(f"{folder / STUDY}: ", "").replace(f"{folder}/", "").removeprefix("skisnow: ")
     return replaced(message, {str(folder / STUDY): STUDY, f"{folder}/": ""})
-
-
-CARVE_S: Final = 0.03  # time of a carved turn (s, laptop of 2025)
-
-
-def unit_s(of: str, values: Mapping[str, Any]) -> float:
-    """Time of a point at slowness 1 (s): one carved turn, or the simulated time of a run; 0 if unknown.
-
-    values: values of the scenario by key.
-    """
-    return CARVE_S if of == CARVE else simulated_s(values) or 0.0

@@ -48,11 +48,6 @@ class Range:
             return Message("{low} to {high}, {n} values, logarithmic", **fields)
         return Message("{low} to {high}, {n} values", **fields)
 
-    @property
-    def middle(self) -> float:
-        """Middle of the range."""
-        return (self.low + self.high) / 2.0
-
 
 @dataclass(frozen=True, slots=True)
 class StudyQuestion:

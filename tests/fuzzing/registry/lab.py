@@ -1,5 +1,6 @@
 """Readers of the store and of the lab: the SQLite store, uploads, jobs, what a killed process left."""
 
+import asyncio
 import json
 import sqlite3
 from contextlib import closing, suppress
@@ -15,7 +16,7 @@ from skisnow.campaign.store import Journals, Store, export_corrected, replay_jou
 from skisnow.web.lab_skis import read_ski_files
 from skisnow.web.lab_tracks import Placing, TrackFolders
 from skisnow.web.replay_addresses import RunFolders, _ski_of_job
-from skisnow.web.runs import Job, Runs, _run_time
+from skisnow.web.runs import Job, Runs
 from skisnow.web.settings import Limits
 from skisnow.web.uploads import add_uploaded
 from tests.campaign.store.test_journal import TOML as _ENTERED
@@ -108,7 +109,7 @@ def _uploaded(folder: Path) -> object:
 
 
 def _job(name: str) -> bytes:
-    job = Job(name, "carved-46m", {"run.duration_s": "1"}, "2026-11-01T10:00:00+00:00", state="done", took_s=3.0)
+    job = Job(name, "carved-46m", {"run.duration_s": "1"}, "2026-11-01T10:00:00+00:00", state="done")
     return json.dumps(asdict(job)).encode()
 
 
@@ -125,8 +126,7 @@ def _job_files() -> Files:
 def _read_jobs(folder: Path) -> object:
     runs = Runs(folder)
     return [
-        (job, runs._finished_job(Job("run-1", "", {}, ""), "x", cancelled=False), _run_time(folder, job))
-        for job in runs.jobs()
+        (job, asyncio.run(runs._ended_as(Job("run-1", "", {}, ""), "x", cancelled=False))) for job in runs.jobs()
     ], _ski_of_job(folder / "run-1/job.json")
 
 
@@ -182,7 +182,7 @@ READERS = (
     ),
     Reader(
         name="summary.json", target="run-1/summary.json", files=_job_files, read=_read_jobs, mutations=JSON,
-        covers=("web.runs:Runs._finished_job", "web.runs:_run_time"),
+        covers=("web.runs:Runs._ended_as",),
     ),
     Reader(
         name="placing of a track", target="tracks/t-1/about.json", files=_track_files, read=_placed, mutations=JSON,

@@ -13,13 +13,13 @@ from starlette.datastructures import FormData
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
 from ...replay.run_file import RUN_FILE
-from ..elements import Outcome, Words, button, choice, field, folded, link, named
+from ..elements import Outcome, button, choice, field, folded, link, named
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
 from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import add_upload, address, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
-from ..runs import Job, Runs, duration_words
+from ..runs import Job, Runs
 from ..scenario_fields import ScenarioField, field_label, in_labels
 from ..settings import Lab
 from ..snow_choice import ChosenSnow, SnowChoice, require_scenario, results_and_snow_words, snow_words
@@ -113,7 +113,6 @@ class _Form:
             self._basic = ui.element("div").classes("inputs")
         with ui.element("div").classes("acts"):
             button(Message("Simulate"), self.ask, "main", once=True)
-            self._estimate = Words("").classes("quiet").props("role=status")
         self._status = Outcome()
         with ui.element("fieldset").classes("redrawn"):
             self._expert = ui.element("div")
@@ -133,8 +132,7 @@ class _Form:
             key = SCENARIO_KEYS[name]
             if name == MASS and _has_skier(values):
                 key = replace(key, label=MASS_OF_SKIER)
-            made = self._fields[name] = ScenarioField(key, values.get(name), typed.get(name))
-            made.element.on_value_change(self._show_estimate)
+            self._fields[name] = ScenarioField(key, values.get(name), typed.get(name))
 
         with self._basic:
             for name in basic(values):
@@ -142,7 +140,6 @@ class _Form:
         with self._expert:
             add_expert_fields(values, SECTIONS, add, is_open=bool(typed.keys() - set(basic(values))))
         self._show_numbers()
-        self._show_estimate()
 
     def _typed(self) -> dict[str, str]:
         """Visible values that differ from the scenario, by key."""
@@ -158,20 +155,6 @@ class _Form:
     def _show_numbers(self) -> None:
         for name, is_given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
             self._fields[name].place.set_visibility(not is_given)
-
-    def _show_estimate(self) -> None:
-        from ...scenario import scenario_file
-
-        values: dict[str, Any] = dict(scenario_file(str(self._scenario.value)).values)
-        for name in ("run.duration_s", "run.length_m", "start.speed_m_per_s"):
-            try:
-                values[name] = float(self._fields[name].text or 0.0)
-            except ValueError:
-                values[name] = None
-        values["solver.method"] = self._fields["solver.method"].text
-        seconds = self._runs.estimated_s(values)
-        words = "" if seconds is None else duration_words(seconds)
-        self._estimate.set_text(words and Message("Takes about {duration_words}.", duration_words=words))
 
     async def ask(self) -> None:
         """Add the simulation to the queue if its values are valid."""

@@ -17,11 +17,11 @@ from ..elements import Outcome, Words, button, choice, link, named, option_texts
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import redrawn_by
-from ..runs import Job, Runs
+from ..runs import Job
 from ..scenario_fields import ScenarioField, field_label, in_labels
 from ..settings import Lab
 from ..snow_choice import SnowChoice
-from ..studies import Studies, unit_s
+from ..studies import Studies
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..widgets import Act, JobCard, JobList
 from ..words import language_of, said, typed_number
@@ -39,7 +39,6 @@ FIRST: Final = {
 }
 """First varied input with its number of values."""
 UNLOADING: Final = "unloading_ratio"
-TIMES: Final = ("run.duration_s", "run.length_m", "start.speed_m_per_s")
 
 
 def add_page(lab: Lab) -> None:
@@ -71,7 +70,7 @@ class _Form:
     def __init__(self, lab: Lab, studies: Studies) -> None:
         from ...scenario import scenario_names
 
-        self._studies, self._runs = studies, Runs(lab.runs)
+        self._studies = studies
         self._skis = LabSkis(lab.runs)
         self._fields: dict[str, ScenarioField] = {}
         self._axes: list[AxisFields] = []
@@ -91,7 +90,7 @@ class _Form:
             self._inputs = ui.element("div")
         with ui.element("div").classes("acts"):
             button(Message("Start the study"), self.ask, "main", once=True)
-            self._estimate = Words("").classes("quiet").props("role=status")
+            self._points = Words("").classes("quiet").props("role=status")
         self._status = Outcome()
         if studies.elsewhere:
             sentence(Message("The workers of {elsewhere} compute.", elsewhere=studies.elsewhere), "quiet")
@@ -158,34 +157,16 @@ class _Form:
         return dict(zip(names, (self._snow.gives_hardness, self._snow.gives_stress), strict=True))
 
     def _follow(self) -> None:
-        """Show the fields that apply, and the estimated time of the study."""
+        """Show the fields that apply, and the number of points."""
         varied, from_snow = {axis.name for axis in self._axes}, self._numbers_from_snow()
         for name, field in self._fields.items():
             field.place.set_visibility(name not in varied and not from_snow.get(name))
         try:
             points = self._axes[0].count() * self._axes[1].count() * len(self._chosen_names())
         except ParameterError:
-            self._estimate.set_text("")
+            self._points.set_text("")
             return
-        self._estimate.set_text(self._studies.estimate_words(self._runs, points, *self._unit()))
-
-    def _unit(self) -> tuple[str, float]:
-        """Solver, and time of a point with the middles of the ranges, see `unit_s`."""
-        if self._is_carve:
-            return "", unit_s(CARVE, {})
-        values = self._field_values()
-        for name in TIMES:
-            try:
-                values[name] = float(self._fields[name].text or 0.0)
-            except ValueError:
-                return "", 0.0
-        for axis in self._axes:
-            if axis.name in TIMES:
-                try:
-                    values[axis.name] = axis.range().middle
-                except ParameterError:
-                    return "", 0.0
-        return self._fields["solver.method"].text, unit_s(str(self._of.value), values)
+        self._points.set_text(Message("{points} points.", points=points))
 
     async def ask(self) -> None:
         """Add the study to the queue if it is valid."""

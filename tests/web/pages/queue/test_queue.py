@@ -17,8 +17,8 @@ from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web import widgets
-from skisnow.web.runs import Job, Runs, duration_words, new_name, simulated_s
-from skisnow.web.studies import Studies, unit_s
+from skisnow.web.runs import Job, Runs, new_name
+from skisnow.web.studies import Studies
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from tests.coded import raises
 
@@ -65,8 +65,8 @@ def work_through(runs: Runs, during: Any = None) -> None:
     finished(worked(runs, lambda: is_over(runs), during))
 
 
-def ended(queue: Runs, job: Job, last: str = "so", *, took_s: float = 3.0, cancelled: bool = False) -> Job:
-    return finished(queue._ended_as(job, last, took_s, cancelled=cancelled))
+def ended(queue: Runs, job: Job, last: str = "so", *, cancelled: bool = False) -> Job:
+    return finished(queue._ended_as(job, last, cancelled=cancelled))
 
 
 def test_the_name_of_a_folder_says_when_and_what_for() -> None:
@@ -84,7 +84,7 @@ def test_a_run_is_on_the_disk_as_it_was_asked(tmp_path: Path) -> None:
     kept = (tmp_path / job.name / "job.json").read_text(encoding="utf-8")
     assert json.loads(kept) == {
         "name": job.name, "scenario": "carved-46m", "changes": {"run.duration_s": "1", "ski.file": str(place)},
-        "asked_at": job.asked_at, "state": "waiting", "said": "", "given": "ski: a ü", "took_s": 0.0, "language": "de",
+        "asked_at": job.asked_at, "state": "waiting", "said": "", "given": "ski: a ü", "language": "de",
         "title": "", "points": 0,
     }  # fmt: skip
     assert "ü" in kept and '\n "name": ' in kept
@@ -194,23 +194,23 @@ def test_one_that_waits_is_cancelled_and_no_other(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("summary", "cancelled", "over", "took"),
+    ("summary", "cancelled", "over"),
     [
-        (None, False, "failed", 0.0),
-        (None, True, "cancelled", 0.0),
-        ({}, False, "done", 3.0),
-        ({}, True, "done", 3.0),
-        ({"remedy": ""}, False, "done", 3.0),
-        ({"outcome": "interrupted"}, True, "cancelled", 0.0),
+        (None, False, "failed"),
+        (None, True, "cancelled"),
+        ({}, False, "done"),
+        ({}, True, "done"),
+        ({"remedy": ""}, False, "done"),
+        ({"outcome": "interrupted"}, True, "cancelled"),
     ],
 )
-def test_end_of_a_run_by_its_summary(tmp_path: Path, summary: Any, cancelled: bool, over: str, took: float) -> None:
+def test_end_of_a_run_by_its_summary(tmp_path: Path, summary: Any, cancelled: bool, over: str) -> None:
     runs = Runs(tmp_path)
     job = runs.ask("a", {})
     if summary is not None:
         (tmp_path / job.name / "summary.json").write_text(json.dumps(SUMMARY | summary), encoding="utf-8")
     found = ended(runs, job, cancelled=cancelled)
-    assert (found.state, found.took_s) == (over, took)
+    assert found.state == over
     assert ("46.0 m" in found.said) is (summary is not None)
 
 
@@ -264,9 +264,9 @@ def test_a_study_that_was_cancelled_or_failed_continues(tmp_path: Path, monkeypa
     first, second = studies.ask_for(TURNS), studies.ask_for(TURNS)
     monkeypatch.setattr(studies_module, "available_cores", lambda: 9)
     for before in ("cancelled", "failed"):
-        studies._keep(replace(first, state=before, said="so", took_s=3.0))
+        studies._keep(replace(first, state=before, said="so"))
         studies.go_on(first.name)
-        assert studies.jobs() == [second, replace(first, took_s=3.0)]
+        assert studies.jobs() == [second, first]
     for name, now in ((first.name, "waiting"), (first.name, "running"), (first.name, "done"), ("none", "failed")):
         studies._keep(replace(first, state=now))  # type: ignore[arg-type]
         with raises(ParameterError, "not_stopped"):
@@ -290,10 +290,10 @@ def test_only_the_files_of_a_study_are_given(tmp_path: Path) -> None:
 
 def test_the_outcomes_of_a_study_are_counted(tmp_path: Path) -> None:
     studies = Studies(tmp_path)
-    job = replace(studies.ask_for(TURNS), took_s=2.0)
+    job = studies.ask_for(TURNS)
     (studies.folder / job.name / "table.csv").write_text(TABLE, encoding="utf-8")
     found = ended(studies, job)
-    assert found == replace(job, state="done", took_s=5.0, said=found.said)
+    assert found == replace(job, state="done", said=found.said)
     assert ("3 " in found.said, "2;" in found.said, "1." in found.said) == (True, True, True)
     assert ended(studies, job, BUSY).state == "done"
     study, table = studies.table(job.name)
@@ -309,7 +309,7 @@ def test_what_a_study_has_finished_is_kept_and_told(tmp_path: Path, cancelled: b
     folder = studies.folder / job.name
     said = f"skisnow: {folder / 'study.toml'}: {folder}/ski is none."
     found = ended(studies, job, said, cancelled=cancelled)
-    assert (found.state, found.took_s) == ("cancelled" if cancelled else "failed", 3.0)
+    assert found.state == ("cancelled" if cancelled else "failed")
     assert str(tmp_path) not in found.said
     assert "0 of 2" in found.said
     kept = KeptRows.opened(folder / "table.csv.partial", "a")
@@ -325,70 +325,8 @@ def test_a_study_that_another_process_writes_is_restarted(tmp_path: Path, monkey
     studies = Studies(tmp_path)
     job = studies.ask_for(TURNS)
     said = f"table.csv.partial {BUSY}"
-    assert ended(studies, job, said) == replace(job, state="waiting", took_s=3.0)
+    assert ended(studies, job, said) == replace(job, state="waiting")
     assert ended(studies, job, said, cancelled=True).state == "cancelled"
-
-
-def run(folder: Path, name: str, took: float, wall: float, simulated: float, method: str = "fast") -> Job:
-    """A run that is done."""
-    (folder / name).mkdir()
-    summary = {"wall_s": wall, "simulated_s": simulated, "scenario": {"solver": {"method": method}}}
-    (folder / name / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    return Job(name, "a", {}, "2026", state="done", took_s=took)
-
-
-def test_how_long_a_run_takes_is_learned_from_the_last_five(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """12 s of computing for 5 s with the method; 3.2 s around each."""
-    runs, values = Runs(tmp_path), {"run.duration_s": 10.0, "solver.method": "fast"}
-    assert runs.estimated_s(values) == 18.0
-    assert runs.estimated_s({}) is None
-    told = [
-        run(tmp_path, "a", 5.0, 4.0, 2.0),
-        run(tmp_path, "b", 10.0, 8.0, 3.0),
-        run(tmp_path, "c", 6.0, 2.0, 1.0, "default"),
-        run(tmp_path, "d", 6.0, 2.0, 1.0, "default"),
-        run(tmp_path, "e", 7.0, 2.0, 1.0, "default"),
-        run(tmp_path, "f", 99.0, 2.0, 1.0),
-    ]
-    none = run(tmp_path, "g", 0.0, 50.0, 1.0)
-    (tmp_path / "h").mkdir()
-    damaged = []
-    for number, text in enumerate(("{", "{}", '{"scenario": 1}', json.dumps({"scenario": {"solver": {"method": 1}}}))):
-        damaged.append(replace(none, name=f"h{number}", took_s=1.0))
-        (tmp_path / f"h{number}").mkdir()
-        (tmp_path / f"h{number}" / "summary.json").write_text(text, encoding="utf-8")
-    jobs = [none, *damaged, replace(none, name="nowhere", took_s=1.0), *told]
-    monkeypatch.setattr(runs, "jobs", lambda: jobs)
-    assert runs.slowness("fast") == pytest.approx(12.0 / 5.0)
-    assert runs.slowness("default") == pytest.approx(2.0)
-    assert runs.slowness("accurate") == 1.0
-    assert runs.estimated_s(values) == pytest.approx(24.0 + (1 + 2 + 4 + 4 + 5) / 5)
-
-
-@pytest.mark.parametrize(
-    ("duration", "length", "speed", "ends"),
-    [
-        (5.0, None, 7.0, 5.0), (5.0, 14.0, 7.0, 2.0), (1.0, 14.0, 7.0, 1.0), (None, 14.0, 7.0, 2.0),
-        (None, 14.0, 0.0, None), (None, None, 7.0, None), (0.0, 0.0, 7.0, None), ("5", "14", "7", 2.0),
-        (float("inf"), 14.0, 7.0, 2.0), (float("nan"), None, None, None), (-0.5, None, None, None),
-        (1e308, None, None, None), (5.0, 14.0, None, 5.0),
-    ],
-)  # fmt: skip
-def test_a_run_ends_after_its_time_or_its_way(duration: Any, length: Any, speed: Any, ends: float | None) -> None:
-    values = {"run.duration_s": duration, "run.length_m": length, "start.speed_m_per_s": speed}
-    assert simulated_s(values) == ends
-    assert unit_s("a", values) == (ends or 0.0)
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [
-        (0.0, "5 s"), (7.0, "5 s"), (8.0, "10 s"), (42.0, "40 s"), (89.9, "90 s"), (90.0, "2 min"), (600.0, "10 min"),
-        (7100.0, "118 min"), (7139.0, "119 min"), (7200.0, "2 h"), (20_000.0, "6 h"),
-    ],
-)  # fmt: skip
-def test_a_duration_is_reported_as_exact_as_it_is_known(seconds: float, words: str) -> None:
-    assert duration_words(seconds) == words
 
 
 def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,7 +40,7 @@ def refused(desk: Desk, page: Sheet) -> str:
     return desk.code
 
 
-def estimate(page: Sheet) -> str:
+def number_of_points(page: Sheet) -> str:
     """The text behind the button; empty without one."""
     lines = page.outline()
     line = lines[lines.index(BUTTON) + 1]
