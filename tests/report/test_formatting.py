@@ -243,8 +243,8 @@ def test_printed_is_the_value_to_its_digits(value: float, digits: int) -> None:
 
 
 def test_p_values() -> None:
-    assert p_equals(0.00012, style="plain") == "p < 0.001"
-    assert p_equals(0.0503, style="plain") == "p = 0.050"
+    assert p_equals(0.00012) == "p\u00a0<\u00a00.001"
+    assert p_equals(0.0503) == "p\u00a0=\u00a00.050"
     assert p_equals(0.52) == "p\u00a0=\u00a00.52"
 
 

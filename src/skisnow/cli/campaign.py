@@ -120,7 +120,7 @@ def analyse(options: argparse.Namespace) -> int:
         return 0
     from ..report.campaign.summary import summary
 
-    print(summary(analysis.results))
+    print(summary(analysis))
     if options.out is not None:
         print(f"Report: {options.out / 'report.html'}", file=sys.stderr)
     return 0

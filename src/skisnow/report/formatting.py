@@ -130,11 +130,10 @@ def probability(p: float | None, *, style: Style = "typeset") -> str:
     return f"${sign}$ {limit}" if style == "latex" else f"{sign} {_signed(str(limit), style)}"
 
 
-def p_equals(p: float | None, *, style: Style = "typeset") -> str:
-    """A p value inside a sentence: ``p = 0.52`` or ``p < 0.001``, not broken over lines where typeset."""
-    text = probability(p, style=style)
-    sentence = f"p {text}" if text[0] in "<>" else f"p = {text}"
-    return sentence.replace(" ", "\u00a0") if style == "typeset" else sentence
+def p_equals(p: float | None) -> str:
+    """A p value inside a sentence: ``p = 0.52`` or ``p < 0.001``, not broken over lines."""
+    text = probability(p)
+    return (f"p {text}" if text[0] in "<>" else f"p = {text}").replace(" ", "\u00a0")
 
 
 def counted(number: int, singular: str, plural: str) -> str:
@@ -221,6 +220,7 @@ def _time_element(iso_time: str, words: str) -> Markup:
 
 
 SYMBOL: Final = re.compile(r"(?:(?<![\w<>/])|(?<=_[A-Za-z0-9]/))([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
+_PLAIN: Final = str.maketrans("−\u00a0\u202f", "-  ")
 _PERCENT: Final = re.compile(r"(?<=\d) %")
 _LATEX_SPECIAL: Final = {
     "\\": r"\textbackslash{}",
@@ -292,6 +292,15 @@ def html(text: str) -> Markup:
     """HTML of a text of skisnow in the current language, with markup for its symbols."""
     tied = _PERCENT.sub("\u00a0%", str(text))
     return Markup(SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(tied))))
+
+
+def terminal_text(sentence: Markup) -> str:
+    """Text of a sentence in HTML, for a terminal; symbols as ``H_V``.
+
+    >>> terminal_text(prose("H_V is {value} N/mm³", value="−1"))
+    'H_V is -1 N/mm³'
+    """
+    return Markup(sentence.replace("<sub>", "_")).striptags().translate(_PLAIN)
 
 
 def latex(text: str) -> str:
