@@ -1,30 +1,14 @@
-"""Findings of a campaign as sentences in HTML: caveats, models, seating, unloading, regressions."""
+"""Findings of a campaign as sentences in HTML: caveats, models, seating, unloading."""
 
 from __future__ import annotations
-
-import math
-from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
 
 from ..._support.messages import Message
-from ..formatting import html, interval, p_equals, prose, significant, whole
-from .data import Json, ReportData, numbers, pairs
-from .key_results import SIGNIFICANT
+from ..formatting import html, prose, significant, whole
+from .data import ReportData, numbers, pairs
 from .series_tables import count_resolved_offsets
-from .tables import QUANTITY
-
-_STEP: Final = {
-    "edge_angle_rad": (math.pi / 2.0, Message("from 0° to 90°")),
-    "snow_density_kg_per_m3": (100.0, Message("per 100 kg/m³")),
-    "drop_cone_depth_mm": (10.0, Message("per 10 mm")),
-    "smp_mean_force_N": (1.0, Message("per 1 N")),
-    "smp_snow_density_kg_per_m3": (100.0, Message("per 100 kg/m³")),
-    "H_V_N_per_mm3": (1.0, Message("per 1 N/mm³")),
-}
-"""Step of each predictor for which a sentence gives the change of the response."""
-MOST_SENTENCES: Final = 40
 
 
 def caveats(data: ReportData) -> list[Markup]:
@@ -163,85 +147,3 @@ def unloading_findings(data: ReportData) -> list[Markup]:
 
 def _table_file(name: str, data: ReportData) -> Markup:
     return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if data.synthetic else "")
-
-
-def regression_sentences(data: ReportData) -> list[Markup]:
-    """One sentence for each regression, up to `MOST_SENTENCES`."""
-    rows = data.results["regressions"]
-    sentences = [_finding(row) for row in rows[:MOST_SENTENCES]]
-    if len(rows) > MOST_SENTENCES:
-        sentences.append(
-            prose("{n_rows} further regressions are only in the table.", n_rows=len(rows) - MOST_SENTENCES)
-        )
-    return sentences
-
-
-def _finding(row: Json) -> Markup:
-    if row["b"] is None and row["n"] == 0:
-        return _regression_sentence(row, Message("no data."))
-    if row["b"] is None:
-        return _regression_sentence(row, Message("no slope: too few experiments, or the predictor does not vary."))
-    if row["withheld"]:
-        judgement = prose(
-            "not judged: {reason}; the slope over them is {change} {unit} {step}.",
-            reason=row["withheld"], **_slope(row),
-        )  # fmt: skip
-        return _regression_sentence(row, judgement)
-    if row["p"] is None:
-        return _regression_sentence(row, Message("too few experiments for an interval or a test."))
-    if row["p"] < SIGNIFICANT:
-        judgement = prose(
-            "significant ({p}); {response} changes by {change} {unit} {step}, 95 % interval {ends}.",
-            p=p_equals(row["p"]), ends=_change_interval(row, row["interval"][1]), **_slope(row),
-        )  # fmt: skip
-    else:
-        judgement = prose(
-            "not significant ({p}); yet {response} could still change by anything in {ends} {unit} {step} (95 % "
-            "interval; estimate {change}).",
-            p=p_equals(row["p"]), ends=_change_interval(row, row["interval"][1]), **_slope(row),
-        )  # fmt: skip
-    return html(" ").join([_regression_sentence(row, judgement), *_by_site(row)])
-
-
-def _regression_sentence(row: Json, judgement: str) -> Markup:
-    return prose(
-        "{response} on {predictor}, {group} (n = {n}): {judgement}",
-        response=html(QUANTITY[row["response"]][0]),
-        predictor=html(QUANTITY[row["terms"][1]][0]),
-        group=Message("all sites") if row["group"] == "all" else row["group"],
-        n=row["n"],
-        judgement=judgement if isinstance(judgement, Markup) else html(judgement),
-    )
-
-
-def _slope(row: Json) -> dict[str, Any]:
-    """Response with its unit, change over the step of the predictor, and that step, for a sentence."""
-    (response, unit), (factor, step) = QUANTITY[row["response"]], _STEP[row["terms"][1]]
-    change = significant(row["b"][1] * factor)
-    return {"response": html(response), "unit": unit, "change": change, "step": step}
-
-
-def _change_interval(row: Json, slopes: list[float] | None) -> str:
-    factor = _STEP[row["terms"][1]][0]
-    return interval(None if slopes is None else [end * factor for end in slopes])
-
-
-def _by_site(row: Json) -> list[Markup]:
-    """Sentence about the interval with sites as clusters; empty without one."""
-    if row["interval_by_site"] is None:
-        return []
-    pair = row["interval_by_site"][1]
-    if pair is None:
-        return [prose("The sites do not give a separate interval.")]
-    contains_zero, ends = pair[0] <= 0.0 <= pair[1], _change_interval(row, pair)
-    if contains_zero and row["p"] < SIGNIFICANT:
-        return [
-            prose(
-                "With sites as clusters the interval is {ends}: it contains zero, so the apparent effect may be a "
-                "difference between a few sites.",
-                ends=ends,
-            )
-        ]
-    if not contains_zero and row["p"] >= SIGNIFICANT:
-        return [prose("With sites as clusters the interval is {ends}: it leaves out zero.", ends=ends)]
-    return [prose("With sites as clusters the interval is {ends}.", ends=ends)]

@@ -148,7 +148,6 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
         procedures_compared=findings.procedure_comparison(data),
         seating_found=findings.seating_findings(data),
         unloading_found=findings.unloading_findings(data),
-        regression_sentences=findings.regression_sentences(data),
         tables=defaultdict(Markup, tables_html(tables)),
         pictures=pictures,
         missing=missing,
