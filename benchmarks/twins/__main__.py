@@ -1,4 +1,4 @@
-"""``python -m tests.identification.twins``: compute twins, and write the tables of docs/validation/identification.md.
+"""``python -m benchmarks.twins``: compute twins, and write the tables of docs/validation/identification.md.
 
 Twins of photo cells and marks take minutes, those of turns hours: all that are finished are in docs/validation/twins,
 and the same command goes on with those that are missing.
@@ -18,13 +18,13 @@ from .pool import run_twins
 from .truth import SCENARIOS, SEEDS
 from .turns import NOISELESS, one_noiseless, one_turn
 
-DOCS: Final = Path(__file__).parents[3] / "docs"
+DOCS: Final = Path(__file__).parents[2] / "docs"
 PAGE: Final = "validation/identification"
 KINDS: Final = ("glides", "grooves", "noiseless", "turns", "shears")
 
 
 def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
-    parser = argparse.ArgumentParser(prog="python -m tests.identification.twins", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.twins", description=__doc__)
     parser.add_argument("kinds", nargs="*", default=[], help=f"of {', '.join(KINDS)}; none: the tables alone")
     parser.add_argument("--seeds", type=int, default=len(SEEDS), help="from 0 up to this many")
     parser.add_argument("--minutes", type=float, default=math.inf, help="after which a kind ends with its next twin")

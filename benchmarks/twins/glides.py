@@ -4,11 +4,11 @@ import math
 from typing import Final
 
 import numpy as np
+from tests.identification import glide_in_closed_form as exact
 
 from skisnow.identification import Identification, PhotoCellRun, PhotoCells, identify
 from skisnow.scenario import scenario_file
 
-from .. import glide_in_closed_form as exact
 from .kept import Row, interval_row, number
 
 SCENARIO: Final = "carved-46m"

@@ -5,12 +5,12 @@ from typing import Final
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from tests.present import present
 
 from skisnow import Run
 from skisnow.comparison import compare_tracks
 from skisnow.identification import Identification, identify
 from skisnow.track.track import Track
-from tests.present import present
 
 from .kept import Row, interval_row, number
 from .truth import FREE, Truth, track_of, true_run, truth_of

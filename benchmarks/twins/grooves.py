@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from tests.present import present
 
 from skisnow import SnowProperties, carve
 from skisnow._support.units import MM, N_PER_MM2, N_PER_MM3
 from skisnow.identification import MeasuredGrooves, identify
 from skisnow.scenario import scenario_file
-from tests.present import present
 
 from .kept import Row, interval_row, number
 

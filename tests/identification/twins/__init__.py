@@ -1,1 +1,0 @@
-"""Data computed from a known truth, and what identification makes of them: ``python -m tests.identification.twins``."""
