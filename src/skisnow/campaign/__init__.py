@@ -8,26 +8,8 @@ from .screening import flag_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
 
 __all__ = [
-    "QUALITY_FLAGS",
-    "AppliedCorrection",
-    "Campaign",
-    "DensitySamples",
-    "DropConeTests",
-    "PenetrationSeries",
-    "PenetrationTests",
-    "Problem",
-    "QualityFlag",
-    "ReferenceCampaign",
-    "ReferenceNoise",
-    "ShearTests",
-    "SnowMicroPenProfile",
-    "campaign_of_files",
-    "check_campaign",
-    "flag_problems",
-    "read_campaign",
-    "read_snow_micro_pen",
-    "reference_campaign",
-    "screen_penetration",
-    "screen_shear",
-    "write_reference",
-]
+    "QUALITY_FLAGS", "AppliedCorrection", "Campaign", "DensitySamples", "DropConeTests", "PenetrationSeries",
+    "PenetrationTests", "Problem", "QualityFlag", "ReferenceCampaign", "ReferenceNoise", "ShearTests",
+    "SnowMicroPenProfile", "campaign_of_files", "check_campaign", "flag_problems", "read_campaign",
+    "read_snow_micro_pen", "reference_campaign", "screen_penetration", "screen_shear", "write_reference",
+]  # fmt: skip

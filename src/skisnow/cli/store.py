@@ -170,7 +170,6 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
         f"given: {_counts_text(done.n_campaigns_given, done.n_entries_given)}; "
         f"taken: {_counts_text(done.n_campaigns_taken, done.n_entries_taken)}",
         *([f"conflicts settled: {done.n_settled}"] if done.n_settled else []),
-        *done.same_names,
         *(f"left where it is: {problem}" for problem in done.problems),
     ]
     for conflict in done.conflicts:

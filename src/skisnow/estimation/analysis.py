@@ -25,7 +25,16 @@ from .hardness import shear_displacement, shear_stress
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, reason_without_choice, select_model
-from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, SiteMean, seating, site_means, site_snow, used_words
+from .parts import (
+    ModelTable,
+    PenetrationAnalysis,
+    ShearAnalysis,
+    SiteMean,
+    seating_change,
+    site_means,
+    site_snow,
+    used_words,
+)
 from .readings import ReadingUncertainty, readings_of
 from .regressions import (
     DENSITY_KEY,
@@ -318,7 +327,7 @@ def _analyse_penetration(
         readings=readings,
         model=model,
         hardness=hardnesses,
-        seating=seating(readings, model),
+        seating_change=seating_change(readings, model.offset),
         fitted=fitted,
         growing=growing,
         site_growth=site_growth(growing, screened.used, sites),

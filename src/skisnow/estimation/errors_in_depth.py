@@ -52,24 +52,19 @@ _BLOCK: Final = 8192
 class FittedHardness(ShownFields):
     """Hardness of m series from all their readings.
 
-    readings: the readings at the depths less the offset of their series.
-    offset: δ (m) that was subtracted; 0 where the model has no estimate.
+    readings: the readings at the depths less the offset of their series, where the model has an estimate.
     value: H by definition (SI).
-    interval: (m, 2), 95 %, of H_V (N/m³).
     scatter: relative scatter s of each series about F = H_V V.
     """
 
     readings: Readings
-    offset: FloatArray
     value: dict[str, FloatArray]
-    interval: FloatArray
     scatter: FloatArray
 
     def of(self, chosen: BoolArray) -> FittedHardness:
         """The same for the chosen series only."""
         value = {symbol: H[chosen] for symbol, H in self.value.items()}
-        readings = self.readings.of(chosen)
-        return FittedHardness(readings, self.offset[chosen], value, self.interval[chosen], self.scatter[chosen])
+        return FittedHardness(self.readings.of(chosen), value, self.scatter[chosen])
 
 
 def fitted_hardness(readings: Readings, model: CampaignModel) -> FittedHardness:
@@ -77,15 +72,14 @@ def fitted_hardness(readings: Readings, model: CampaignModel) -> FittedHardness:
 
     H_V is that of the campaign's model; the others come from all readings of a series, at depths less the offset.
     """
-    offset = np.nan_to_num(model.offset)
-    moved = readings.less_offset(offset)
+    moved = readings.less_offset(np.nan_to_num(model.offset))
     estimates = {
         symbol: hardness_of_all_readings(moved, definition, model.uncertainty)
         for symbol, definition in DEFINITIONS.items()
     }
     value = {symbol: H for symbol, (H, _) in estimates.items()}
     value["H_V"] = np.where(np.isfinite(model.log_hardness), model.hardness, value["H_V"])
-    return FittedHardness(moved, offset, value, model.hardness_interval, estimates["H_V"][1])
+    return FittedHardness(moved, value, estimates["H_V"][1])
 
 
 def fit_models_with_depth_errors(fitted: FittedHardness, uncertainty: ReadingUncertainty) -> tuple[ModelFit, ...]:

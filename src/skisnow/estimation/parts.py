@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, ShownFields, amount, field_facts
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount, field_facts
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from ..snow.mean_snow import (
@@ -55,18 +55,18 @@ class ModelTable(Shown):
 class PenetrationAnalysis(Shown):
     """Results of the penetration experiments; arrays run over all m experiments, the table over the used ones.
 
-    ``model`` is the campaign's model, ``hardness`` Eqn 1 of each definition by its symbol, ``fitted`` the hardness from
-    all readings of a series, ``growing`` a hardness that grows with depth, ``unloading`` the estimates from readings
-    while discs were taken off. ``table``, ``errors_in_depth``, ``volume_factor`` and ``selected`` are None where no
-    experiment is used, ``selected`` also with too few series; ``warnings`` report this, and contain those of
-    `fit_warnings`.
+    ``model`` is the campaign's model, ``hardness`` Eqn 1 of each definition by its symbol, ``seating_change`` its
+    relative change without the depth zero, ``fitted`` the hardness from all readings of a series, ``growing`` one that
+    grows with depth, ``unloading`` the estimates from readings while discs were taken off. ``table``,
+    ``errors_in_depth``, ``volume_factor`` and ``selected`` are None where no experiment is used, ``selected`` also with
+    too few series; ``warnings`` report this, and contain those of `fit_warnings`.
     """
 
     screened: Screened
     readings: Readings
     model: CampaignModel
     hardness: dict[str, Hardness]
-    seating: Seating
+    seating_change: FloatArray
     fitted: FittedHardness
     growing: GrowingHardness
     site_growth: tuple[SiteValue, ...]
@@ -101,28 +101,8 @@ def used_words(screened: Screened) -> str:
     return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class Seating(ShownFields):
-    """Depth zero of m series: the tool touched at gauge reading ``offset``; true depth = reading - offset.
-
-    offset, interval: δ (m) and its 95 % interval (m, 2), from `campaign_model`; NaN with fewer than two readings in
-        contact.
-    hardness_change: relative change of the largest-load H_V when δ is subtracted from its depth; NaN where no depth
-        remains.
-    """
-
-    offset: FloatArray
-    interval: FloatArray
-    hardness_change: FloatArray
-
-
-def seating(readings: Readings, model: CampaignModel) -> Seating:
-    """Offset of each series, and the change of H_V of Eqn 1."""
-    return Seating(model.offset, model.offset_interval, _hardness_change(readings, model.offset))
-
-
-def _hardness_change(readings: Readings, offset: FloatArray) -> FloatArray:
-    """V(e₇)/V(e₇ - δ) - 1: how the hardness of Eqn 1 moves when δ is taken off the depth."""
+def seating_change(readings: Readings, offset: FloatArray) -> FloatArray:
+    """V(e₇)/V(e₇ - δ) - 1: relative change of H_V of Eqn 1 when δ (m) is subtracted; NaN where no depth remains."""
     depth = readings.penetration_depth[readings.largest]
     left = depth - offset
     corrected = readings.volume_of_series(np.where(left > 0, left, 0.0))

@@ -209,9 +209,9 @@ def _seating_json(experiment: tuple[str, ...], penetration: PenetrationAnalysis)
     return column_rows(
         {
             "experiment": list(experiment),
-            "depth_offset_mm": finite_or_none(penetration.seating.offset / MM),
-            "interval_mm": finite_or_none(penetration.seating.interval / MM),
-            "H_V_change_percent": finite_or_none(100.0 * penetration.seating.hardness_change),
+            "depth_offset_mm": finite_or_none(penetration.model.offset / MM),
+            "interval_mm": finite_or_none(penetration.model.offset_interval / MM),
+            "H_V_change_percent": finite_or_none(100.0 * penetration.seating_change),
         }
     )
 
@@ -242,7 +242,7 @@ def _fitted_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalys
         {
             "experiment": list(experiment),
             "H_V_N_per_mm3": finite_or_none(fitted.value["H_V"] / N_PER_MM3),
-            "H_V_interval_N_per_mm3": finite_or_none(fitted.interval / N_PER_MM3),
+            "H_V_interval_N_per_mm3": finite_or_none(penetration.model.hardness_interval / N_PER_MM3),
             "relative_scatter": finite_or_none(fitted.scatter),
         }
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -42,12 +42,12 @@ class WindowMeans:
     n: windows.
     """
 
-    rupture_force: float
-    deflection: float
-    element_size: float
-    snow_density: float
-    specific_surface_area: float
-    n: int
+    rupture_force: float = math.nan
+    deflection: float = math.nan
+    element_size: float = math.nan
+    snow_density: float = math.nan
+    specific_surface_area: float = math.nan
+    n: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +65,15 @@ class EvaluatedRecording:
     """
 
     flags: tuple[str, ...]
-    surface: float
-    reach: float
-    air_force: float
-    mean_force: float
-    median_force: float
-    resistance: float
-    windows: dict[str, WindowMeans]
+    surface: float = math.nan
+    reach: float = math.nan
+    air_force: float = math.nan
+    mean_force: float = math.nan
+    median_force: float = math.nan
+    resistance: float = math.nan
+    windows: dict[str, WindowMeans] = field(
+        default_factory=lambda: dict.fromkeys(PENETROMETER_RELATIONS, WindowMeans())
+    )
 
     @property
     def is_used(self) -> bool:
@@ -167,10 +169,10 @@ def evaluate_profile(
     top = _surface(profile, settings, surface)
     flags = [CANCELLED] if is_cancelled else []
     if top is None:
-        return _unevaluated_recording((*flags, NO_SURFACE))
+        return EvaluatedRecording((*flags, NO_SURFACE))
     reach = float(profile.depth[-1]) - top.depth
     if reach < settings.to_depth:
-        return _unevaluated_recording((*flags, TOO_SHORT), top, reach)
+        return EvaluatedRecording((*flags, TOO_SHORT), top.depth, reach, top.air_force)
     force = profile.force - top.air_force if settings.subtract_air_force else profile.force
     first, last = (
         round((top.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
@@ -188,15 +190,6 @@ def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, state
         air = profile.force[: round(stated / profile.sample_distance)]
         return SnowSurface(stated, float(np.median(air)) if len(air) else 0.0)
     return snow_surface(profile.force, profile.sample_distance, rise=settings.surface_rise, hold=settings.surface_hold)
-
-
-def _unevaluated_recording(
-    flags: tuple[str, ...], surface: SnowSurface | None = None, reach: float = math.nan
-) -> EvaluatedRecording:
-    none = WindowMeans(*(math.nan,) * 5, n=0)
-    depth, air = (math.nan, math.nan) if surface is None else (surface.depth, surface.air_force)
-    windows = dict.fromkeys(PENETROMETER_RELATIONS, none)
-    return EvaluatedRecording(flags, depth, reach, air, math.nan, math.nan, math.nan, windows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,7 +254,7 @@ def _window_means(force: FloatArray, sample_distance: float, area: float, name: 
     values = _values_of_windows(force, sample_distance, area, name)
     usable = np.isfinite(values.element_size)
     if not usable.any():
-        return WindowMeans(*(math.nan,) * 5, n=0)
+        return WindowMeans()
     return WindowMeans(
         rupture_force=float(np.median(values.noise.rupture_force[usable])),
         deflection=float(np.median(values.noise.deflection[usable])),

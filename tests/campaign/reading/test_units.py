@@ -2,7 +2,6 @@
 column are errors with the result for both readings.
 """
 
-import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -64,14 +63,10 @@ def loads_of(read: Campaign) -> list[float]:
     return [float(each) for each in present(read.penetration).load]
 
 
-def test_loads_that_look_like_kg_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
-    """H_V = F / V with V = L e² / (2 tan 30°): 50 N and 490.3 N on 200 mm of ski, 1.41 mm deep."""
+def test_loads_that_look_like_kg_are_rejected(write_campaign: WriteCampaign) -> None:
     (problem,) = problems(write_campaign(campaign()))
     place = (problem.severity, problem.code, problem.file, problem.row, problem.column, problem.experiment)
-    assert place == ("error", "unit_missing", "penetration.csv", 4, "load_N", "1")
-    volume = 200.0 * 1.41**2 / (2.0 * math.tan(math.radians(30.0)))
-    assert f"{50.0 / volume:.4g} N/mm³" in problem.action
-    assert f"{50.0 * 9.80665 / volume:.4g} in kg" in problem.action
+    assert place == ("error", "unit_missing", "penetration.csv", 2, "load_N", "1")
     assert 'units."Last" = "kg"' in problem.action
     assert "Last [kg]" in problem.action
 
@@ -105,14 +100,11 @@ def test_a_unit_in_campaign_toml_is_believed(write_campaign: WriteCampaign, line
     assert loads_of(read_campaign(folder)) == pytest.approx([10.0 * factor, 30.0 * factor, 50.0 * factor])
 
 
-def test_depths_that_look_like_cm_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
+def test_depths_that_look_like_cm_are_rejected(write_campaign: WriteCampaign) -> None:
     """No snow has 142 N/mm³; the same 490 N at 1.41 mm are 1.42 N/mm³."""
     loads = "1,A,ski,30,98.1,0.063\n1,A,ski,30,294.2,0.111\n1,A,ski,30,490.3,0.141\n"
     (problem,) = problems(write_campaign(campaign(loads)))
-    assert (problem.code, problem.row, problem.column) == ("unit_missing", 4, "depth_mm")
-    volume = 200.0 * 1.41**2 / (2.0 * math.tan(math.radians(30.0)))
-    assert f"{490.3 / volume * 100.0:.4g} N/mm³" in problem.action
-    assert f"{490.3 / volume:.4g} in cm" in problem.action
+    assert (problem.code, problem.row, problem.column) == ("unit_missing", 2, "depth_mm")
     assert problems(write_campaign(campaign(loads, toml='units.Tiefe = "cm"'))) == []
 
 
@@ -136,17 +128,13 @@ def test_each_tool_is_judged_separately(write_campaign: WriteCampaign) -> None:
     """The disc's loads are small; those of the ski are not, and unloading and an empty table change nothing."""
     rows = "1,A,ski,30,100,0.63\n1,A,ski,30,300,1.11\n2,A,disc,0,20,0.5\n2,A,disc,0,40,1.0\n"
     (problem,) = problems(write_campaign(campaign(rows)))
-    area = math.pi * 50.0**2
-    assert (problem.row, problem.experiment) == (5, "2")
-    assert f"{40.0 / (area * 1.0):.4g} N/mm³" in problem.action
+    assert (problem.row, problem.experiment) == (4, "2")
 
 
-def test_lever_arms_in_cm_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
-    """S_f = M / (r L e): 23.1 N m at 25 mm and at 250 mm on 100 mm of blade, 5.8 mm deep."""
+def test_lever_arms_in_cm_are_rejected(write_campaign: WriteCampaign) -> None:
     (problem,) = problems(write_campaign(campaign(shear="S1,A,blade,90,5.8,25,23.1\n", load="Last [N]")))
     assert (problem.code, problem.row, problem.column) == ("unit_missing", 2, "lever_arm_mm")
-    assert f"{23.1e3 / (25.0 * 100.0 * 5.8):.4g} N/mm²" in problem.action
-    assert f"{23.1e3 / (250.0 * 100.0 * 5.8):.4g} in cm" in problem.action
+    assert "Hebelarm [cm]" in problem.action
 
 
 @pytest.mark.parametrize(

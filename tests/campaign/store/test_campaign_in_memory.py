@@ -32,7 +32,6 @@ from skisnow.campaign.store.stored_tables import (
     CellError,
     checked_cell,
 )
-from skisnow.campaign.store.sync import Names, same_names
 
 from .test_journal import TOML, reading
 from .test_syncing import Laptop, ada, bo, both_sync, shared
@@ -327,12 +326,6 @@ def test_both_wrote_about_a_test_where_each_has_what_the_other_lacks() -> None:
     there = EntryIndex({"a": (FILE, "1"), "e": (FILE, "2"), "f": (FILE, "1"), "g": ("shear.csv", "1")})
     assert here.missing_in(there) == {"b", "c", "d"}
     assert here.written_on_both(there) == there.written_on_both(here) == [(FILE, "2"), ("shear.csv", "1")]
-
-
-def test_names_that_meet_for_the_first_time_are_reported_by_kind() -> None:
-    here, there = Names({"1": "x", "2": "y"}, {"3": "x"}), Names({"1": "x", "5": "x", "6": "z"}, {"3": "x", "7": "y"})
-    (told,) = same_names(here, there)
-    assert "'x': 1, " in told and " 5 " in told
 
 
 def test_next_free_name_and_progress(ada: Laptop, bo: Laptop, group: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -263,14 +263,10 @@ def test_a_campaign_described_differently(ada: Laptop, bo: Laptop, group: Store,
     assert ada.files(id_)["campaign.toml"].startswith(f'place = "{place}"')
 
 
-def test_campaigns_of_one_name_are_kept_apart_and_told(ada: Laptop, bo: Laptop, group: Store) -> None:
+def test_campaigns_of_one_name_are_kept_apart(ada: Laptop, bo: Laptop, group: Store) -> None:
     ids = [laptop.journals.begin(TOML, who=laptop.who) for laptop in (ada, bo)]
-    assert ada.sync(group).same_names == ()
-    (told,) = bo.sync(group).same_names
-    assert all(part in told for part in ("'a day'", *ids))
-    assert len(ada.sync(group).same_names) == 1
+    both_sync(ada, bo, group)
     for laptop in (ada, bo):
-        assert laptop.sync(group).same_names == ()
         assert {head.id for head in laptop.journals.list()} == set(ids)
 
 

@@ -13,13 +13,11 @@ from typing import Final
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
 from ..._support.messages import Message
-from ..._support.units import CM, DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
+from ..._support.units import DEGREE, MM, N_PER_MM3
 from ..problems import Problem, warning
 from .campaign_file import CampaignFile
 from .columns import Table, is_unloading
-from .headings import conversion
 from .table_forms import BRANCH, PENETRATION, SHEAR
 
 FAR: Final = 500.0
@@ -130,33 +128,26 @@ _METRES: Final = 5.0
 def check_missing_units(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     """Errors for columns whose heading states no unit and whose numbers suggest another unit."""
     if table.form == PENETRATION and "load_N" in table.unstated:
-        yield from _loads_in_kg(table, described)
+        yield from _loads_in_kg(table)
     if table.form == PENETRATION and "depth_mm" in table.unstated:
         yield from _depths_in_cm(table, described)
     if table.form == SHEAR and "lever_arm_mm" in table.unstated:
-        yield from _lever_arms(table, described)
+        yield from _lever_arms(table)
     for name in table.unstated:
         unlikely = unlikely_median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
         if unlikely is not None:
             middle, unit = unlikely
-            values = f"with a median of {middle:g}"
-            yield _missing_unit(
-                table, name, values, Message("They look like {unit}.", unit=unit), unit.split(" or ", 1)[0]
-            )
+            yield _missing_unit(table, name, f"with a median of {middle:g}", unit.split(" or ", 1)[0])
 
 
-def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+def _loads_in_kg(table: Table) -> Iterator[Problem]:
     """One error for each tool whose loads are all small and whole or half numbers, as discs in kg are."""
     tool, load = table.names["tool"], table.numbers["load_N"]
     for code, name in enumerate(tool.names):
         rows = np.flatnonzero((tool.code == code) & np.isfinite(load))
-        if not len(rows) or load[rows].max() >= LARGEST_LOAD or np.any(2.0 * load[rows] % 1.0):
-            continue
-        values = f"{load[rows].min():g} to {load[rows].max():g} with tool {name}"
-        largest = _largest_loads(table, rows.tolist())
-        row, hardness = _middle(_hardness(table, name, largest, described), largest)
-        both = _both_readings("H_V", hardness, hardness * KILOGRAM_FORCE, "N/mm³", ("N", "kg"))
-        yield _missing_unit(table, "load_N", values, both, "kg", row)
+        if len(rows) and load[rows].max() < LARGEST_LOAD and not np.any(2.0 * load[rows] % 1.0):
+            values = f"{load[rows].min():g} to {load[rows].max():g} with tool {name}"
+            yield _missing_unit(table, "load_N", values, "kg", int(rows[0]))
 
 
 def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
@@ -164,16 +155,18 @@ def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Prob
     tool, depth = table.names["tool"], table.numbers["depth_mm"]
     for code, name in enumerate(tool.names):
         rows = np.flatnonzero((tool.code == code) & np.isfinite(depth)).tolist()
-        if not rows:
+        if described is None or name not in described.tools or not rows:
             continue
         largest = _largest_loads(table, rows)
-        row, hardness = _middle(_hardness(table, name, largest, described), largest)
-        if not hardness > HARDEST:
-            continue
-        (other,) = _hardness(table, name, [row], described, depth_unit=CM)
-        values = f"{depth[rows].min():g} to {depth[rows].max():g} with tool {name}"
-        both = _both_readings("H_V", hardness, other, "N/mm³", ("mm", "cm"))
-        yield _missing_unit(table, "depth_mm", values, both, "cm", row)
+        volume = described.tools[name].displaced_volume(
+            depth[largest] * MM, table.numbers["edge_angle_deg"][largest] * DEGREE
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            hardness = table.numbers["load_N"][largest] / volume / N_PER_MM3
+        hardness = np.sort(hardness[np.isfinite(hardness)])
+        if len(hardness) and hardness[(len(hardness) - 1) // 2] > HARDEST:
+            values = f"{depth[rows].min():g} to {depth[rows].max():g} with tool {name}"
+            yield _missing_unit(table, "depth_mm", values, "cm", rows[0])
 
 
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
@@ -187,69 +180,25 @@ def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
     return list(largest.values()) or list(rows[:1])
 
 
-def _hardness(
-    table: Table, tool: str, rows: list[int], described: CampaignFile | None, *, depth_unit: float = MM
-) -> FloatArray:
-    """H_V (N/mm³, Eqn 1) of rows with loads in N and depths in a unit (m); NaN if it is unknown."""
-    if described is None or tool not in described.tools:
-        return np.full(len(rows), np.nan)
-    depth, angle = table.numbers["depth_mm"][rows] * depth_unit, table.numbers["edge_angle_deg"][rows] * DEGREE
-    volume = described.tools[tool].displaced_volume(depth, angle)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        hardness = table.numbers["load_N"][rows] / volume / N_PER_MM3
-    return np.where(np.isfinite(hardness), hardness, np.nan)
-
-
-def _lever_arms(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+def _lever_arms(table: Table) -> Iterator[Problem]:
     """An error for lever arms above 5 m in mm, or of the size of torque wrenches in cm or m."""
     arm = table.numbers["lever_arm_mm"]
     rows = np.flatnonzero(np.isfinite(arm)).tolist()
     if not rows:
         return
     middle, longest = float(np.median(arm[rows])), float(arm[rows].max())
-    if middle >= SHORTEST_LEVER_ARM and longest <= LONGEST_LEVER_ARM:
-        return
-    unit = "µm" if longest > LONGEST_LEVER_ARM else "m" if middle < _METRES else "cm"
-    row, stress = _middle(_shear_stress(table, rows, described), rows)
-    size = conversion(unit, "lever_arm_mm")
-    other = stress / size.factor if size is not None else np.nan
-    both = _both_readings("S_f", stress, other, "N/mm²", ("mm", unit))
-    yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", both, unit, row)
+    if middle < SHORTEST_LEVER_ARM or longest > LONGEST_LEVER_ARM:
+        unit = "µm" if longest > LONGEST_LEVER_ARM else "m" if middle < _METRES else "cm"
+        yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", unit, rows[0])
 
 
-def _shear_stress(table: Table, rows: list[int], described: CampaignFile | None) -> FloatArray:
-    """S_f (N/mm², Eqns 7 and 9) of rows with lever arms in mm; NaN if it is unknown."""
-    plates = {} if described is None else described.plates
-    length = np.array([plates.get(table.names["plate"][row], np.nan) for row in rows])
-    force = table.numbers["moment_Nm"][rows] / (table.numbers["lever_arm_mm"][rows] * MM)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stress = force / (length * table.numbers["depth_mm"][rows] * MM) / N_PER_MM2
-    return np.where(np.isfinite(stress), stress, np.nan)
-
-
-def _middle(values: FloatArray, rows: list[int]) -> tuple[int, float]:
-    """Row and value of the median of the finite values; the first row and NaN without finite values."""
-    finite = sorted((value, row) for value, row in zip(values.tolist(), rows, strict=True) if np.isfinite(value))
-    value, row = finite[(len(finite) - 1) // 2] if finite else (float("nan"), rows[0])
-    return row, value
-
-
-def _both_readings(quantity: str, value: float, other: float, result_unit: str, units: tuple[str, str]) -> Message:
-    return Message(
-        "{quantity} of this experiment is {value:.4g} {result_unit} if they are in {unit}, {other:.4g} in "
-        "{other_unit}.",
-        quantity=quantity, value=value, result_unit=result_unit, unit=units[0], other=other, other_unit=units[1],
-    )  # fmt: skip
-
-
-def _missing_unit(table: Table, column: str, values: str, effect: Message, unit: str, row: int = 0) -> Problem:
+def _missing_unit(table: Table, column: str, values: str, unit: str, row: int = 0) -> Problem:
     heading = table.unstated[column]
     line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
     allowed = Message("numbers whose unit is stated")
     action = Message(
-        "{effect} State the unit: in the heading, such as {heading} [{unit}], or at the top of "
+        "They look like {unit}. State the unit: in the heading, such as {heading} [{unit}], or at the top of "
         "campaign.toml, such as {line}.",
-        effect=effect,
         heading=heading,
         unit=unit,
         line=line,

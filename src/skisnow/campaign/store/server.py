@@ -45,7 +45,7 @@ _STATES: Final = {
     "25P03": Message("the server gave up waiting for this program; nothing half-written stays, do it again"),
 }
 _BROKEN: Final = Message("the connection to the server broke; nothing half-written stays, do it again")
-_NOT_REACHED: Final = Message("the server cannot be reached; check the network, the host's name and the port")
+_NOT_REACHED: Final = Message("the server cannot be reached; check that it runs, the network, the host and the port")
 _CONNECTING: Final = (
     ("password authentication failed", Message("the user's name or the password is wrong")),
     ("no password supplied", Message("a password is wanted; put it into PGPASSWORD, or into the file ~/.pgpass")),
@@ -53,27 +53,22 @@ _CONNECTING: Final = (
         "no pg_hba.conf entry",
         Message("the server lets this user not in from this machine; a line of its pg_hba.conf would"),
     ),
-    ("failed to resolve host", Message("the host is unknown; check the address")),
-    ("could not translate host name", Message("the host is unknown; check the address")),
-    (
-        "does not support SSL",
-        Message("the server does not support TLS; its administrator sets ssl = on, or remove sslmode"),
-    ),
     ("certificate", Message("the server's certificate was refused; check sslmode and sslrootcert in the address")),
-    ("role ", Message("the server has no user of that name")),
-    ("does not exist", Message("the server has no database of that name; its administrator makes one with createdb")),
-    ("Connection refused", Message("no server answers there; check that it runs, the host's name and the port")),
-    ("No such file or directory", Message("no server answers there; check that it runs, and the address")),
-    ("timeout expired", _NOT_REACHED),
-    ("timed out", _NOT_REACHED),
-    ("No route to host", _NOT_REACHED),
-    ("Network is unreachable", _NOT_REACHED),
-    ("server closed the connection", _BROKEN),
-    ("connection is lost", _BROKEN),
-    ("connection is closed", _BROKEN),
-    ("terminating connection", _BROKEN),
-)
-"""Parts of the driver's messages without an error code, and the texts that replace them."""
+    *(
+        (part, _NOT_REACHED)
+        for part in (
+            "failed to resolve host", "could not translate host name", "Connection refused", "timeout expired",
+            "No such file or directory", "timed out", "No route to host", "Network is unreachable",
+        )
+    ),
+    *(
+        (part, _BROKEN)
+        for part in (
+            "server closed the connection", "connection is lost", "connection is closed", "terminating connection",
+        )
+    ),
+)  # fmt: skip
+"""Parts of the driver's messages without an error code, and the texts that replace them; others stay as they are."""
 
 
 def reason(error: BaseException, address: ServerAddress) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple
+from typing import Final
 
 from sqlalchemy import Connection, insert, select
 
@@ -47,7 +47,6 @@ class SyncResult:
     n_entries_given, n_entries_taken: number of journal entries that were sent, and received.
     n_settled: number of conflicts that were settled by choices.
     conflicts: open conflicts.
-    same_names: sentences on campaigns from both stores with the same name, which are kept separate.
     problems: sentences on damaged campaigns and journals, which were not transferred.
     """
 
@@ -57,7 +56,6 @@ class SyncResult:
     n_entries_taken: int
     n_settled: int
     conflicts: tuple[Conflict, ...]
-    same_names: tuple[str, ...]
     problems: tuple[str, ...]
 
 
@@ -94,8 +92,6 @@ class _Sync:
 
     def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> SyncResult:
         with database_errors(self._there.path, "not_synchronised"):
-            with reading(self._here.engine) as here, reading(self._there.engine) as there:
-                before = names_of(here), names_of(there)
             n_settled = self._settle_conflicts(chosen, who)
             to_there, to_here = (self._here, self._there), (self._there, self._here)
             return SyncResult(
@@ -105,7 +101,6 @@ class _Sync:
                 n_entries_taken=self._copy_journals(*to_here, lambda done, n: progress(n + done, 2 * n)),
                 n_settled=n_settled,
                 conflicts=self._find_conflicts(),
-                same_names=tuple(same_names(*before)),
                 problems=tuple(self._problems),
             )
 
@@ -161,11 +156,7 @@ class _Sync:
     def _find_conflicts(self) -> tuple[Conflict, ...]:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             open_ = list(self._open_conflicts(here, there))
-            names = names_of(here) if open_ else Names({}, {})
-        return tuple(
-            replace(conflict, name=names.stored.get(conflict.campaign) or names.entered.get(conflict.campaign, ""))
-            for conflict in open_
-        )
+            return tuple(replace(conflict, name=_name(here, conflict.campaign)) for conflict in open_)
 
     def _open_conflicts(self, here: Connection, there: Connection) -> Iterator[Conflict]:
         for id_ in shared_journals(here, there):
@@ -194,32 +185,10 @@ def _damage(store: Store, journal_id: str) -> str:
     return ""
 
 
-class Names(NamedTuple):
-    """Names by id of stored campaigns and of those in entry, without damaged ones."""
-
-    stored: Mapping[str, str]
-    entered: Mapping[str, str]
-
-
-def names_of(connection: Connection) -> Names:
-    """The names of a store's campaigns."""
-    rows = connection.execute(select(campaign.c.id, campaign.c.name)).all()
-    stored = {str(id_): name for id_, name in rows if isinstance(name, str)}
-    ids = set(connection.execute(select(journal.c.id)).scalars()) - {id_ for id_, _ in rows}
-    return Names(stored, {id_: name for id_ in ids if (name := entered_name(connection, id_))})
-
-
-def same_names(here: Names, there: Names) -> Iterator[str]:
-    """One sentence for each campaign from there that is new here and has the name of another campaign here."""
-    kinds = ("stored campaigns", "campaigns in entry")
-    for what, of_here, of_there in zip(kinds, here, there, strict=True):
-        new = {id_: name for id_, name in of_there.items() if id_ not in of_here}
-        pairs = [(name, other, id_) for id_, name in new.items() for other, known in of_here.items() if known == name]
-        for name, other, id_ in sorted(pairs):
-            yield (
-                f"Two {what} are called {name!r}: {other}, which was here, and {id_} from there. "
-                "They are kept apart; give one another name if they are not the same."
-            )
+def _name(connection: Connection, id_: str) -> str:
+    """Name of a campaign that is stored or in entry; "" without one."""
+    name = connection.execute(select(campaign.c.name).where(campaign.c.id == id_)).scalar()
+    return name if isinstance(name, str) else entered_name(connection, id_)
 
 
 def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) -> None:
