@@ -104,20 +104,11 @@ def _read_bytes(path: Path) -> bytes:
     except OSError as error:
         data, reason = None, error.strerror or str(error)
     if data is None:
-        raise track_error(
-            "unreadable_file",
-            str(path),
-            value=reason,
-            allowed=Message("a plain file that may be read"),
-            action=Message("Check the path."),
-        )
+        allowed, action = Message("a plain file that may be read"), Message("Check the path.")
+        raise track_error("unreadable_file", str(path), allowed, action, value=reason)
     if not data.strip():
-        raise track_error(
-            "empty_file",
-            path.name,
-            allowed=Message("a track"),
-            action=Message("The file is empty; was anything recorded?"),
-        )
+        action = Message("The file is empty; was anything recorded?")
+        raise track_error("empty_file", path.name, Message("a track"), action)
     return data.decode("utf-16", errors="replace").encode() if data.startswith(_UTF_16) else data
 
 
@@ -129,13 +120,9 @@ def _read_recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
     if kind == "nmea":
         return read_nmea(data, name)
     if data.startswith(_PACKED) or (kind == "csv" and _OTHER.match(data)):
-        raise track_error(
-            "unreadable_file",
-            name,
-            value=data[:16].decode("latin-1"),
-            allowed=Message("CSV, GPX, TCX, FIT, NMEA, UBX or .pos of RTKLIB"),
-            action=Message("Export the track as GPX, or unpack it."),
-        )
+        allowed = Message("CSV, GPX, TCX, FIT, NMEA, UBX or .pos of RTKLIB")
+        action = Message("Export the track as GPX, or unpack it.")
+        raise track_error("unreadable_file", name, allowed, action, value=data[:16].decode("latin-1"))
     text = decode_text(data, name)
     if kind in ("gpx", "tcx"):
         return read_gpx(text, name)

@@ -129,7 +129,7 @@ def test_other_encoding(tmp_path: Path) -> None:
         (gpx(point(47.0, "14Z")).replace("trkpt", "rtept"), ["'1 rtept'", "trkpt"]),
         (gpx().replace("gpx", "kml"), ["'<kml>'", "trkpt"]),
         (gpx(point(47.0, "14Z").replace("2022-12-27T", "27.12.2022 ")), ["not_a_time", "'27.12.2022 15:51:14Z'"]),
-        (gpx(point(47.0, "14Z"))[:-30], ["unreadable_file", "ends too early"]),
+        (gpx(point(47.0, "14Z"))[:-30], ["unreadable_file", "export it again"]),
         (
             gpx(point(47.0, "14Z", "<extensions><speed>7,5</speed></extensions>")),
             ["not_a_number", "point 1, column speed", "'7,5'"],

@@ -109,14 +109,9 @@ def _checked_speed(
         )
     ratio = float(np.percentile((speed[begin] + speed[end])[moving] / 2.0 / by_places[moving], _STRAIGHT))
     if ratio > _OTHER_UNIT and recording.speed_kind in _KINDS:
-        raise track_error(
-            "unknown_unit",
-            recording.name,
-            column="speed",
-            value=Message("{ratio:.2g} times the speed of the places", ratio=ratio),
-            allowed=Message("speeds in m/s, times in s"),
-            action=Message("Correct the unit of the speeds (km/h: 3.6, mph: 2.2) or of the times."),
-        )
+        value = Message("{ratio:.2g} times the speed of the places", ratio=ratio)
+        allowed = Message("speeds in m/s (km/h: 3.6, mph: 2.2), times in s")
+        raise track_error("unknown_unit", recording.name, allowed, column="speed", value=value)
     return speed, ()
 
 
@@ -135,13 +130,9 @@ def _projected(
     """Places, velocities and origin: in east, north, up where the file has latitude and longitude, else as recorded."""
     if not recording.is_geodetic:
         if origin is not None:
-            raise track_error(
-                "no_place_on_earth",
-                recording.name,
-                value=str(origin),
-                allowed=Message("an origin with a file that has latitude and longitude"),
-                action=Message("The file has local metres only; leave the origin out."),
-            )
+            allowed = Message("an origin with a file that has latitude and longitude")
+            action = Message("The file has local metres only; leave the origin out.")
+            raise track_error("no_place_on_earth", recording.name, allowed, action, value=str(origin))
         return recording.place, recording.velocity, None
     at = origin or recording.default_origin or _first(recording.place[fix])
     velocity = recording.velocity
@@ -158,36 +149,23 @@ def _first(points: FloatArray) -> GeodeticPoint:
 
 def _require_points(recording: Recording) -> None:
     if not len(recording.time):
-        raise track_error(
-            "empty_file",
-            recording.name,
-            value=", ".join(f"{count} {words}" for words, count in recording.left_out.items() if count) or None,
-            allowed=Message("at least one point"),
-            action=Message("The file has no point; was anything recorded?"),
-        )
+        value = ", ".join(f"{count} {words}" for words, count in recording.left_out.items() if count) or None
+        action = Message("The file has no point; was anything recorded?")
+        raise track_error("empty_file", recording.name, Message("at least one point"), action, value=value)
     fix = _fix(recording)
     if not np.any(fix):
-        raise track_error(
-            "no_place",
-            recording.name,
-            allowed=Message("at least one point with a place and a fix"),
-            action=Message("None of the {points} points has one; was the receiver under a roof?", points=len(fix)),
-        )
+        action = Message("None of the {points} points has one; was the receiver under a roof?", points=len(fix))
+        raise track_error("no_place", recording.name, Message("at least one point with a place and a fix"), action)
 
 
 def _require_time(recording: Recording) -> None:
     falls = np.flatnonzero(np.diff(recording.time) < 0.0)
     if len(falls):
         point = int(falls[0]) + 1
-        raise track_error(
-            "time_backwards",
-            recording.name,
-            place=recording.places_in_file[point],
-            column="time",
-            value=_time_text(recording, point),
-            allowed=Message("a time not before the previous point's, {time}", time=_time_text(recording, point - 1)),
-            action=Message("Sort the points, or split the file where another recording begins."),
-        )
+        allowed = Message("a time not before the previous point's, {time}", time=_time_text(recording, point - 1))
+        action = Message("Sort the points, or split the file where another recording begins.")
+        place, value = recording.places_in_file[point], _time_text(recording, point)
+        raise track_error("time_backwards", recording.name, allowed, action, place=place, column="time", value=value)
 
 
 def _time_text(recording: Recording, point: int) -> str:
@@ -210,15 +188,10 @@ def _require_in_range(recording: Recording) -> None:
         if not len(outside):
             continue
         point = int(outside[0][0])
-        raise track_error(
-            "out_of_range",
-            recording.name,
-            place=recording.places_in_file[point],
-            column=column,
-            value=f"{values[tuple(outside[0])]:.12g}",
-            allowed=Message("a number {allowed} {unit}", allowed=quantity.allowed, unit=quantity.unit),
-            action=Message("Correct the value; is it in another unit, or in another column?"),
-        )
+        place, value = recording.places_in_file[point], f"{values[tuple(outside[0])]:.12g}"
+        allowed = Message("a number {allowed} {unit}", allowed=quantity.allowed, unit=quantity.unit)
+        action = Message("Correct the value; is it in another unit, or in another column?")
+        raise track_error("out_of_range", recording.name, allowed, action, place=place, column=column, value=value)
 
 
 BEFORE: Final = "points before the first fix"

@@ -126,16 +126,10 @@ def _decode_messages(data: bytes, name: str, records: _Records) -> None:
                 elif frame.frame_type == fitdecode.FIT_FRAME_DATA and frame.name == "event":
                     records.add_event(frame)
     except Exception as error:  # damaged bytes make fitdecode fail in many ways
-        read = len(records.times)
-        raise track_error(
-            "unreadable_file",
-            name,
-            value=f"{type(error).__name__}: {error}",
-            allowed=Message("a whole FIT file with right checksums"),
-            action=Message(
-                "It is damaged or ends too early, after {read} records; copy it from the device again.", read=read
-            ),
-        ) from error
+        allowed = Message("a whole FIT file with right checksums")
+        action = Message("It is damaged or ends after {read} records; copy it again.", read=len(records.times))
+        value = f"{type(error).__name__}: {error}"
+        raise track_error("unreadable_file", name, allowed, action, value=value) from error
 
 
 def _number(message: Any, *names: str) -> float:

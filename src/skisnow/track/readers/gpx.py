@@ -100,7 +100,7 @@ class _Reader:
         self._refuse(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
 
     def _refuse(self, value: str, allowed: str) -> NoReturn:
-        raise _damage_error(self._name, value, allowed, Message("No device writes such a file; export it again."))
+        raise track_error("unreadable_file", self._name, allowed, value=value)
 
     def _key(self) -> str | None:
         """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
@@ -149,36 +149,22 @@ def _read_points(text: str, name: str) -> list[_Point]:
     try:
         parser.Parse(text.lstrip(), True)
     except expat.ExpatError as error:
-        action = Message("The file is damaged or ends too early; export it again.")
-        raise _damage_error(name, str(error), "GPX 1.0, GPX 1.1 or TCX", action) from error
+        raise track_error("unreadable_file", name, "GPX 1.0, GPX 1.1 or TCX", value=str(error)) from error
     if not reader.points and (reader.others or reader.root not in (_POINT[0], _TCX_POINT[0])):
         counted = ", ".join(f"{count} {element}" for element, count in reader.others.items())
-        raise _damage_error(
-            name,
-            counted or f"<{reader.root}>",
-            " > ".join(_TCX_POINT if reader.root == _TCX_POINT[0] else _POINT),
-            Message("The file has no recorded track. Waypoints, routes and courses are not read."),
-        )
+        allowed = " > ".join(_TCX_POINT if reader.root == _TCX_POINT[0] else _POINT)
+        action = Message("The file has no recorded track. Waypoints, routes and courses are not read.")
+        raise track_error("unreadable_file", name, allowed, action, value=counted or f"<{reader.root}>")
     return reader.points
-
-
-def _damage_error(name: str, value: str, allowed: str, action: str) -> Exception:
-    return track_error("unreadable_file", name, value=value, allowed=allowed, action=action)
 
 
 def _required_time(point: _Point, name: str, place: int) -> datetime:
     text = point.texts.get("time", "")
     time = moment(text.upper())
     if time is None:
-        raise track_error(
-            "not_a_time",
-            name,
-            place=f"point {place + 1}",
-            column="time",
-            value=text or None,
-            allowed=Message("a time such as 2022-12-27T15:51:14Z in every point"),
-            action=Message("The point has no readable time. A drawn route is not a recorded track."),
-        )
+        allowed = Message("a time such as 2022-12-27T15:51:14Z in every point, unlike in a drawn route")
+        where = f"point {place + 1}"
+        raise track_error("not_a_time", name, allowed, place=where, column="time", value=text or None)
     return time.replace(tzinfo=UTC)  # a time without a zone is in UTC, as the format defines
 
 
@@ -205,13 +191,6 @@ def _number(text: str | None, name: str, place: int, column: str, unit: str) -> 
     """The number; NaN if the file has `nan` or `inf`, which is flagged."""
     value = math.nan if text is None else number(text)
     if math.isnan(value) and (text is None or not is_not_finite(text)):
-        raise track_error(
-            "not_a_number",
-            name,
-            place=f"point {place + 1}",
-            column=column,
-            value=text,
-            allowed=Message("a finite number in {unit}", unit=unit),
-            action=Message("Correct the point."),
-        )
+        allowed, where = Message("a finite number in {unit}", unit=unit), f"point {place + 1}"
+        raise track_error("not_a_number", name, allowed, place=where, column=column, value=text)
     return value

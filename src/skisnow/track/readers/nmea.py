@@ -131,13 +131,10 @@ def read_nmea(data: bytes, name: str) -> Recording:
         counts["times before the first fix"] = sum(map(_is_placed, epochs[: fixed[0]]))
         epochs = epochs[fixed[0] :]
     if not any(map(_is_placed, epochs)):
-        raise track_error(
-            "empty_file",
-            name,
-            value=", ".join(f"{count} {words}" for words, count in counts.items() if count),
-            allowed=Message("sentences GGA, GNS, GLL or RMC with times, and with right checksums or none"),
-            action=Message("Switch these sentences on in the receiver, or copy the file again."),
-        )
+        allowed = Message("sentences GGA, GNS, GLL or RMC with times, and with right checksums or none")
+        action = Message("Switch these sentences on in the receiver, or copy the file again.")
+        counted = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
+        raise track_error("empty_file", name, allowed, action, value=counted)
     times, start = _times(epochs)
     placed = [number for number, epoch in enumerate(epochs) if _is_placed(epoch)]
     counts[NO_PLACE] = sum(not _is_placed(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)

@@ -142,9 +142,9 @@ class TrackProblem:
 def track_error(
     code: str,
     file: str,
-    *,
     allowed: str,
-    action: str,
+    action: str = Message("Correct the file, or export it again."),
+    *,
     place: str | None = None,
     column: str | None = None,
     value: str | None = None,

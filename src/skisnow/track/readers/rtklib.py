@@ -55,14 +55,9 @@ def parse_header(text: str, name: str) -> Header:
     """
     match = HEADER.search(text)
     if match is None:
-        raise track_error(
-            "missing_column",
-            name,
-            allowed=Message(
-                "a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)"
-            ),
-            action=Message("Switch the output of the header on in RTKLIB, and solve again."),
-        )
+        allowed = Message("a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m)")
+        action = Message("Switch the output of the header on in RTKLIB, and solve again.")
+        raise track_error("missing_column", name, allowed, action)
     line, first = match[0], match[2].lower()
     kind = next(kind for kind, names in PLACES.items() if names[0] == first)
     after = line[line.lower().index(first) :]
@@ -72,14 +67,7 @@ def parse_header(text: str, name: str) -> Header:
     columns = tuple(re.sub(r"\(.*", "", cell).lower() for cell in cells)
     absent = [column for column in PLACES[kind] if column not in columns]
     if absent:
-        raise track_error(
-            "missing_column",
-            name,
-            column=absent[0],
-            value=line,
-            allowed=", ".join(PLACES[kind]),
-            action=Message("The header line is damaged; solve again."),
-        )
+        raise track_error("missing_column", name, ", ".join(PLACES[kind]), column=absent[0], value=line)
     sexagesimal = kind == "geodetic" and unit is not None and "'" in unit[1]
     return Header(SCALES.get((match[1] or "").upper(), "local"), kind, sexagesimal, separator, columns)
 
@@ -152,25 +140,13 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
     cells = line.replace(header.separator, " ").split()
     moment = _parse_moment(cells, header.scale)
     if moment is None:
-        raise track_error(
-            "not_a_time",
-            name,
-            place=f"row {row}",
-            column=header.scale,
-            value=" ".join(cells[:2]),
-            allowed=Message("a time such as 2022/12/27 15:51:14.000, or week and seconds"),
-            action=Message("The row is damaged; solve again."),
-        )
+        allowed = Message("a time such as 2022/12/27 15:51:14.000, or week and seconds")
+        written = " ".join(cells[:2])
+        raise track_error("not_a_time", name, allowed, place=f"row {row}", column=header.scale, value=written)
     cells = cells[2:]
     if len(cells) < header.width:
-        raise track_error(
-            "too_few_cells",
-            name,
-            place=f"row {row}",
-            value=line.strip(),
-            allowed=Message("{count} numbers behind the time, as in the header line", count=header.width),
-            action=Message("The row is cut short; solve again, or remove the row."),
-        )
+        allowed = Message("{count} numbers behind the time, as in the header line", count=header.width)
+        raise track_error("too_few_cells", name, allowed, place=f"row {row}", value=line.strip())
     cells = cells[: header.width]
     values = [number(cell) for cell in cells]
     first_column = header.width - len(header.columns)
@@ -183,14 +159,8 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
         values[place] = math.nan
         is_used = place < first_column or header.columns[place - first_column] in used
         if is_used and not is_not_finite(cell):
-            raise track_error(
-                "not_a_number",
-                name,
-                place=f"row {row}",
-                value=cell,
-                allowed=Message("a finite number with a decimal point, at most {largest:g}, or nan", largest=LARGEST),
-                action=Message("The row is damaged; solve again."),
-            )
+            allowed = Message("a finite number with a decimal point, at most {largest:g}, or nan", largest=LARGEST)
+            raise track_error("not_a_number", name, allowed, place=f"row {row}", value=cell)
     return moment, _degrees(cells, values) if header.sexagesimal else values, not_finite
 
 

@@ -98,14 +98,8 @@ class _Table:
         """Build a table with rows as long as its header."""
         place = f"row {cells.header_line}"
         if sum(map(bool, cells.header)) == 1:
-            raise track_error(
-                "missing_column",
-                name,
-                place=place,
-                value=cells.header[0],
-                allowed=Message("headings separated by comma, semicolon or tab in the first row"),
-                action=Message("Remove lines above the headings, or export the file with one of these separators."),
-            )
+            allowed = Message("headings separated by comma, semicolon or tab in the first row")
+            raise track_error("missing_column", name, allowed, place=place, value=cells.header[0])
         is_geodetic = _is_geodetic(cells.header, name, place)
         columns = _columns(cells.header, is_geodetic, name, place)
         width = len(cells.header)
@@ -136,15 +130,9 @@ class _Table:
             raise self._missing_error("time" if self.is_geodetic else "time_s")
 
     def _missing_error(self, column: str) -> Exception:
-        return track_error(
-            "missing_column",
-            self.name,
-            place=f"row {self.cells.header_line}",
-            column=column,
-            value=", ".join(self.cells.header),
-            allowed=Message("the columns {forms}", forms=_FORMS),
-            action=Message("Name the column in the header."),
-        )
+        place, value = f"row {self.cells.header_line}", ", ".join(self.cells.header)
+        allowed, action = Message("the columns {forms}", forms=_FORMS), Message("Name the column in the header.")
+        return track_error("missing_column", self.name, allowed, action, place=place, column=column, value=value)
 
     def column(self, name: str) -> list[str]:
         """Cells of a column that the file has, which then counts as used."""
@@ -214,27 +202,17 @@ class _Table:
             if column == "time_s"
             else Message("seconds, or a date and time such as 2022-12-27T15:51:14.2Z,")
         )
-        return track_error(
-            "not_a_number" if column == "time_s" else "not_a_time",
-            self.name,
-            place=f"row {self.cells.lines[place]}",
-            column=self.heading(column),
-            value=cell,
-            allowed=joined([what, also]),
-            action=Message("A point without a time cannot be put on a track; correct the cell."),
-        )
+        code = "not_a_number" if column == "time_s" else "not_a_time"
+        return self._cell_error(code, place, column, cell, joined([what, also]))
 
     def _number_error(self, place: int, column: str, cell: str) -> Exception:
         mark = Message("a decimal comma") if self.mark == "," else Message("a decimal point")
-        return track_error(
-            "not_a_number",
-            self.name,
-            place=f"row {self.cells.lines[place]}",
-            column=self.heading(column),
-            value=cell,
-            allowed=Message("a finite number with {mark}, or nothing", mark=mark),
-            action=Message("Correct the cell."),
-        )
+        allowed = Message("a finite number with {mark}, or nothing", mark=mark)
+        return self._cell_error("not_a_number", place, column, cell, allowed)
+
+    def _cell_error(self, code: str, place: int, column: str, cell: str, allowed: Message) -> Exception:
+        row = f"row {self.cells.lines[place]}"
+        return track_error(code, self.name, allowed, place=row, column=self.heading(column), value=cell)
 
 
 _HEMISPHERE: Final = re.compile(r"(?<![^\W_])(?:n[\W_]?s|e[\W_]?w)(?![^\W_])|hemi", re.IGNORECASE)
@@ -312,13 +290,8 @@ def _is_geodetic(headings: Sequence[str], name: str, place: str) -> bool:
     if not local and not geodetic:
         local, geodetic = (any(_meaning(heading, form[:2]) for heading in headings) for form in (LOCAL, GEODETIC))
     if local and geodetic:
-        raise track_error(
-            "two_places",
-            name,
-            place=place,
-            allowed=Message("the columns {forms}", forms=_FORMS),
-            action=Message("The file has places in metres and in degrees; take one of them away."),
-        )
+        action = Message("The file has places in metres and in degrees; take one of them away.")
+        raise track_error("two_places", name, Message("the columns {forms}", forms=_FORMS), action, place=place)
     return geodetic
 
 
@@ -349,25 +322,13 @@ def _columns(headings: Sequence[str], is_geodetic: bool, name: str, place: str) 
             continue
         first, factor, _ = readings[0]
         if not factor:
-            raise track_error(
-                "unknown_unit",
-                name,
-                place=place,
-                column=column,
-                value=headings[first],
-                allowed=Message("the units {units}", units=", ".join(filter(None, _WORDS[column][1]))),
-                action=Message("Give one of these units in the heading, or rename a column of something else."),
-            )
+            allowed = Message("the units {units}", units=", ".join(filter(None, _WORDS[column][1])))
+            action = Message("Give one of these units in the heading, or rename a column of something else.")
+            raise track_error("unknown_unit", name, allowed, action, place=place, column=column, value=headings[first])
         if len(readings) > 1:
-            raise track_error(
-                "column_twice",
-                name,
-                place=place,
-                column=column,
-                value=", ".join(headings[reading[0]] for reading in readings),
-                allowed=Message("each column once"),
-                action=Message("Rename or remove one of them."),
-            )
+            value = ", ".join(headings[reading[0]] for reading in readings)
+            allowed, action = Message("each column once"), Message("Rename or remove one of them.")
+            raise track_error("column_twice", name, allowed, action, place=place, column=column, value=value)
         columns[column] = _Column(first, factor)
     return columns
 

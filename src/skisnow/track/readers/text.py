@@ -27,13 +27,9 @@ def decode_text(data: bytes, name: str) -> str:
     try:
         return "\n".join(decoded(data).text.replace("\ufeff", "").splitlines())
     except NoTextError as error:
-        raise track_error(
-            "unreadable_file",
-            name,
-            value=error.place,
-            allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX"),
-            action=Message("The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT."),
-        ) from error
+        allowed = Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX")
+        action = Message("The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT.")
+        raise track_error("unreadable_file", name, allowed, action, value=error.place) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,18 +57,10 @@ def split_cells(text: str, name: str) -> Cells:
             lines += lines_of_chunk
             rows += (tuple(map(str.strip, cells)) for cells in records)
     except UnreadableTextError as error:
-        raise track_error(
-            "unreadable_file",
-            name,
-            place=None if error.row is None else f"row {error.row}",
-            value=error.value,
-            allowed=error.allowed,
-            action=error.action,
-        ) from error
+        row = None if error.row is None else f"row {error.row}"
+        raise track_error("unreadable_file", name, error.allowed, error.action, place=row, value=error.value) from error
     if not rows:
-        raise track_error(
-            "empty_file", name, allowed=Message("a header and rows"), action=Message("The file is empty.")
-        )
+        raise track_error("empty_file", name, Message("a header and rows"), Message("The file is empty."))
     return Cells(rows[0], lines[0], tuple(lines[1:]), tuple(rows[1:]), csv_text.separator)
 
 
@@ -84,16 +72,10 @@ def require_width(cells: Cells, name: str) -> None:
     width = len(cells.header)
     for line, row in zip(cells.lines, cells.rows, strict=True):
         if any(row[width:]):
-            raise track_error(
-                "too_many_cells",
-                name,
-                place=f"row {line}",
-                value=next(filter(None, row[width:])),
-                allowed=count_message("{count} cell, as in the header", "{count} cells, as in the header", count=width),
-                action=Message(
-                    "A decimal comma in a file separated by commas looks like this; separate by semicolons."
-                ),
-            )
+            allowed = count_message("{count} cell, as in the header", "{count} cells, as in the header", count=width)
+            action = Message("A decimal comma in a file separated by commas looks like this; separate by semicolons.")
+            value = next(filter(None, row[width:]))
+            raise track_error("too_many_cells", name, allowed, action, place=f"row {line}", value=value)
 
 
 def decimal_mark_of(cells: Iterable[str], separator: str) -> str:

@@ -55,13 +55,9 @@ def read_ubx(data: bytes, name: str) -> Recording:
     epochs = _epochs(data, counts)
     if not epochs:
         counted = ", ".join(f"{count} {words}" for words, count in counts.items())
-        raise track_error(
-            "empty_file",
-            name,
-            value=counted,
-            allowed=Message("messages NAV-PVT with right checksums and valid times"),
-            action=Message("Switch NAV-PVT on in the receiver, or copy the file again."),
-        )
+        allowed = Message("messages NAV-PVT with right checksums and valid times")
+        action = Message("Switch NAV-PVT on in the receiver, or copy the file again.")
+        raise track_error("empty_file", name, allowed, action, value=counted)
     counts["NMEA sentences next to messages NAV-PVT"] = len(SENTENCE.findall(data))
     table = np.array([_epoch_row(epoch) for epoch in epochs])
     start = epochs[0].moment
