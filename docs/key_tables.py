@@ -9,7 +9,7 @@ from pathlib import Path
 from skisnow.campaign.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
 from skisnow.campaign.smet import WeatherSettings
-from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
+from skisnow.campaign.snow_micro_pen import SnowMicroPenSettings
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
 from skisnow.cli.shell import NAMES, json_schema

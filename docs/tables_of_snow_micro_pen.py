@@ -13,7 +13,7 @@ from benchmarks.page_tables import write_tables
 
 from skisnow._support.units import MM
 from skisnow.campaign import SnowMicroPenProfile, read_snow_micro_pen
-from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
+from skisnow.campaign.snow_micro_pen import SnowMicroPenSettings
 from skisnow.estimation.snow_micro_pen import EvaluatedRecording, evaluate_profile
 from skisnow.parameters import build_declared
 
@@ -32,10 +32,10 @@ CASES = {
 
 
 CONSTANTS = {
-    "block of 0.25 mm": ("campaign.snow_micro_pen_records.BLOCK", 0.25 * MM),
-    "block of 1 mm": ("campaign.snow_micro_pen_records.BLOCK", 1.0 * MM),
-    "air over 10 mm": ("campaign.snow_micro_pen_records.AIR", 10.0 * MM),
-    "air over 40 mm": ("campaign.snow_micro_pen_records.AIR", 40.0 * MM),
+    "block of 0.25 mm": ("campaign.snow_micro_pen.BLOCK", 0.25 * MM),
+    "block of 1 mm": ("campaign.snow_micro_pen.BLOCK", 1.0 * MM),
+    "air over 10 mm": ("campaign.snow_micro_pen.AIR", 10.0 * MM),
+    "air over 40 mm": ("campaign.snow_micro_pen.AIR", 40.0 * MM),
     "windows overlap by 25 %": ("estimation.snow_micro_pen.OVERLAP", 0.25),
     "windows overlap by 75 %": ("estimation.snow_micro_pen.OVERLAP", 0.75),
 }

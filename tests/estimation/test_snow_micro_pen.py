@@ -12,8 +12,7 @@ import pytest
 import skisnow
 from skisnow._support.units import MM
 from skisnow.campaign import read_snow_micro_pen
-from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
-from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
+from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile, SnowMicroPenSettings, snow_surface
 from skisnow.cli.shell import json_schema
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
 from skisnow.interop.snowex import site_pit

@@ -10,7 +10,7 @@ from tests.coded import Coded, coded, raises
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import FitError, FitWarning, ParameterError
 from skisnow.statistics import linear_fit, variance_shares
-from skisnow.statistics.clusters import cluster_intervals
+from skisnow.statistics.linear import cluster_intervals
 
 NINE = 9.0  # digits asked for; the certified values have fifteen
 

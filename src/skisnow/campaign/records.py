@@ -19,7 +19,7 @@ from .._support.units import DEGREE, MM, Facts, Shown, amount, ends
 from ..geometry import Tool
 from .problems import AppliedCorrection, Problem
 from .smet import CampaignWeather
-from .snow_micro_pen_records import SnowMicroPenRecordings
+from .snow_micro_pen import SnowMicroPenRecordings
 
 Key = TypeVar("Key", bound="Hashable")
 

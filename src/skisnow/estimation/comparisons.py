@@ -13,8 +13,8 @@ from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import CONFIDENCE, N_PER_MM2, N_PER_MM3
 from ..snow.published import domine_2011, federolf_2006, moessner_2013
-from ..statistics.clusters import cluster_intervals
 from ..statistics.combined_uncertainty import expanded_factor
+from ..statistics.linear import cluster_intervals
 
 FEWEST_SITES: Final = 4
 """Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""

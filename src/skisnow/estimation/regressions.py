@@ -17,8 +17,7 @@ from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, ShownFields
 from ..campaign.records import Campaign, PenetrationTests, ShearTests
-from ..statistics.clusters import cluster_intervals
-from ..statistics.linear import LinearFit, linear_fit
+from ..statistics.linear import LinearFit, cluster_intervals, linear_fit
 from .models import ModelFit
 from .snow_micro_pen import SnowMicroPenAnalysis
 

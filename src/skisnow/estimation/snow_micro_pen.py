@@ -11,8 +11,13 @@ import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray
 from .._support.units import MM, Facts, NotebookFigure, Shown
-from ..campaign.snow_micro_pen import SnowMicroPenProfile
-from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings, SnowSurface, snow_surface
+from ..campaign.snow_micro_pen import (
+    SnowMicroPenProfile,
+    SnowMicroPenRecordings,
+    SnowMicroPenSettings,
+    SnowSurface,
+    snow_surface,
+)
 from ..parameters import values_of
 from ..snow.measured_range import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of

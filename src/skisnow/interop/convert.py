@@ -23,7 +23,7 @@ from .._support.units import MM
 from ..campaign import read_campaign, read_snow_micro_pen
 from ..campaign.caaml import read_caaml
 from ..campaign.smet import StationSeries, read_smet
-from ..campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
+from ..campaign.snow_micro_pen import SnowMicroPenSettings, snow_surface
 from ..campaign.snow_pit import ForceProfile, SnowPit
 from ..estimation.weather import QUANTITIES
 from ..parameters import suggest_and_list

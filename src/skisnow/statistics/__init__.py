@@ -1,10 +1,9 @@
 """Least squares with intervals, bounded fits, nested F tests, resampling. Knows no snow."""
 
 from .bounded import non_negative_fits
-from .clusters import ClusterIntervals, cluster_intervals
 from .combined_uncertainty import expanded_factor, percentile_interval, resampling_counts, welch_satterthwaite
 from .f_tests import NestedTest, nested_f_test, tests_per_group
-from .linear import LinearFit, VarianceShares, linear_fit, variance_shares
+from .linear import ClusterIntervals, LinearFit, VarianceShares, cluster_intervals, linear_fit, variance_shares
 
 __all__ = [
     "ClusterIntervals", "LinearFit", "NestedTest", "VarianceShares",

@@ -9,15 +9,14 @@ from typing import Final, Literal, TypeAlias
 
 from .._support.messages import Message
 from .projection import GeodeticPoint
+from .readers.binary import SYNC, has_places, read_fit, read_ubx
 from .readers.conversion import build_track
-from .readers.fit import read_fit
 from .readers.gpx import read_gpx
 from .readers.nmea import SENTENCE, read_nmea
 from .readers.recording import Recording, track_error
 from .readers.rtklib import HEADER, read_rtklib
 from .readers.table import read_table
 from .readers.text import decode_text
-from .readers.ubx import SYNC, has_places, read_ubx
 from .track import Track
 
 TrackFormat: TypeAlias = Literal["csv", "gpx", "tcx", "fit", "nmea", "ubx", "rtklib"]

@@ -55,7 +55,7 @@ def _track(name: str) -> Reader:
 
 def _module(name: str) -> str:
     kind = {".csv": "table", ".pos": "rtklib"}.get(Path(name).suffix, Path(name).suffix[1:])
-    return f"{kind}:read_{kind}"
+    return f"{'binary' if kind in ('fit', 'ubx') else kind}:read_{kind}"
 
 
 @cache

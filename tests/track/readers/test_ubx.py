@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow.track.projection import GeodeticPoint
-from skisnow.track.readers.ubx import SYNC
+from skisnow.track.readers.binary import SYNC
 from tests.present import present
 
 from .. import metres_per_degree

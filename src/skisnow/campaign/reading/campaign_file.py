@@ -16,7 +16,7 @@ from ...parameters import Allowed, Quantity, own_quantities
 from ...parameters.json_schema import DRAFT, Schema, table_schema
 from ..problems import ALWAYS_EXCLUDE, QUALITY_FLAGS, Problem, error, warning
 from ..smet import WeatherSettings
-from ..snow_micro_pen_records import SnowMicroPenSettings
+from ..snow_micro_pen import SnowMicroPenSettings
 from .headings import KEY as COLUMNS_KEY
 from .headings import UNITS_KEY, Headings, parse_headings
 from .toml_values import TomlValues

@@ -15,8 +15,7 @@ from ..._support.messages import Message
 from ..._support.units import MM
 from ..problems import Problem, error, warning
 from ..smet import CampaignWeather, WeatherSettings, parse_smet
-from ..snow_micro_pen import parse_snow_micro_pen
-from ..snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
+from ..snow_micro_pen import SnowMicroPenRecordings, SnowMicroPenSettings, parse_snow_micro_pen
 from .campaign_file import CAMPAIGN_FILE
 from .columns import Table
 from .corrections import RowCorrections
