@@ -217,16 +217,14 @@ class SkidControl:
     def _yaw(self, seen: Seen, posture: Posture) -> tuple[float, float]:
         """Torque of the hips (N m) and acceleration of the shift (m/s²)."""
         torque, shift = -self._gain @ yaw_state(seen, float(posture.numbers[0]), float(posture.rates[0]))
-        torque, hip = float(torque), seen.body_heading - seen.heading
-        most = self.skier.hip_torque
-        torque = max(-most, min(most, torque))
+        hip, most = seen.body_heading - seen.heading, self.skier.hip_torque
+        torque = max(-most, min(most, float(torque)))
         over = hip - max(-self.skier.greatest_hip, min(self.skier.greatest_hip, hip))
         if over != 0.0:
             torque += 300.0 * over + 25.0 * (seen.body_rate - seen.turn_rate)
         if self._blade.value > 0.5 and abs(posture.edge) > math.radians(3.0):  # a blade carries the body along
-            facing = (1.0 - CARRIED) * seen.heading
-            turn = seen.body_rate - CARRIED * seen.turn_rate
-            torque = self.body.yaw * (60.0 * (hip + facing) + 12.0 * turn)
+            apart, turn = seen.body_heading - CARRIED * seen.heading, seen.body_rate - CARRIED * seen.turn_rate
+            torque = self.body.yaw * (60.0 * apart + 12.0 * turn)
         return torque, float(shift)
 
 

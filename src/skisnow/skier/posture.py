@@ -34,10 +34,11 @@ OPENING: Final = 6.0
 """Corner frequency (1/s) of toe-in and stance (modelling assumption)."""
 YIELDING_INERTIA: Final = 1.5
 """Inertia (kg m²) with which the skis give way to the snow about the hips (found by trial)."""
-HIP_DAMPING: Final = 600.0
-"""Hips' damping over the fourth power of the sine of the lean (N m s) (found by trial: 365 passes the same gates). Skis
-that turn under a leaning body pitch it. The load moves along them, and they lose up to 0.8 of the body's pitch inertia
-times the square of this sine, 2.4 kg m² at 40° (measured)."""
+PITCHING_INERTIA: Final = 6.0
+"""Inertia (kg m²) over the square of the sine of the lean, added in the hips: skis that turn under a leaning body pitch
+it and move the load along them, which takes as much from their own (measured: 0.8 of the body's pitch inertia)."""
+HIP_DAMPING: Final = 150.0
+"""Hips' damping over the fourth power of the sine of the lean (N m s) (found by trial)."""
 DAMPING: Final = 3e3
 """Of one leg that gives way to a load that it is not to bear (N s/m): snow under edged skis, some 2 · 10⁵ N/m, and the
 body swing with it at a third of the critical damping."""
@@ -306,12 +307,13 @@ class Posture:
 
         Their rate is the one about the snow's normal over the cosine of the lean.
         """
-        most, aside = self.skier.hip_torque, float(self.numbers[ASIDE])
-        apart, leg = seen.body_rate - seen.turn_rate, math.hypot(aside, self.height)
-        torque = max(-most, min(most, torque)) + HIP_DAMPING * (aside / leg) ** 4 * apart
+        most, apart, aside = self.skier.hip_torque, seen.body_rate - seen.turn_rate, float(self.numbers[ASIDE])
+        leant = aside**2 / (aside**2 + self.height**2)
+        torque = max(-most, min(most, torque)) + HIP_DAMPING * leant**2 * apart
         self._moment += (1.0 - math.exp(-dt / MOMENT_TIME)) * (seen.moment - self._moment)
-        turns = self._moment / seen.yaw_inertia - (torque + self._moment) / YIELDING_INERTIA
-        wanted = (apart + dt * turns) * leg / self.height
+        inertia = YIELDING_INERTIA + PITCHING_INERTIA * leant
+        turns = self._moment / seen.yaw_inertia - (torque + self._moment) / inertia
+        wanted = (apart + dt * turns) / math.sqrt(1.0 - leant)
         rate = float(self.rates[HIP])
         later = rate + max(-GREATEST_TURN * dt, min(GREATEST_TURN * dt, wanted - rate))
         self.numbers[HIP] += 0.5 * (rate + later) * dt
