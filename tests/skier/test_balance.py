@@ -39,9 +39,10 @@ class Held(BalancedSkier):
         return force.tolist(), [0.0, 0.0, self.scenario.sledge.centre_of_mass[1]]
 
 
-def steady(aside: float, duration: float, speed: float = 7.0, first_turn: float = 0.8) -> Run:
+def steady(aside: float, duration: float, speed: float = 7.0, first_turn: float = 0.8, method: str = "fast") -> Run:
     """One turn to the left without end on level snow, from a time (s) on."""
-    level = {"angle_deg": 0.0, "mu_0": 0.02, "drag_area_m2": 0.0, "speed_m_per_s": speed, "duration_s": duration}
+    level: dict[str, object] = {"angle_deg": 0.0, "mu_0": 0.02, "drag_area_m2": 0.0, "method": method}
+    level |= {"speed_m_per_s": speed, "duration_s": duration}
     turn = tall(Skier(turn_time=1e5, first_turn=first_turn), **level)
     skier = Held(turn)
     skier.aside = aside
@@ -215,13 +216,14 @@ def test_gates_on_a_rolling_profile(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="0.33 mm since grooves follow the rates at the end of a step; not explained", strict=True)
 def test_the_last_bits_stay_small_while_it_balances() -> None:
     """10⁻¹² of the start speed moves the end of 20 s of a turn by less than 0.1 mm.
 
+    By the default method: where one step gets another length, ends of the fast one differ by some share of its error.
     Straight on, flat skis let friction across them change its side at any moment: 0.8 s of it make a millimetre.
     """
-    ends = [steady(0.0, 20.0, speed, first_turn=0.0).place[-1] for speed in (7.0, 7.0 * (1.0 + 1e-12))]
+    speeds = (7.0, 7.0 * (1.0 + 1e-12))
+    ends = [steady(0.0, 20.0, speed, first_turn=0.0, method="default").place[-1] for speed in speeds]
     assert np.linalg.norm(ends[0] - ends[1]) < 1e-4
 
 
