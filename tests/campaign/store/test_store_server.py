@@ -8,7 +8,10 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
-from sqlalchemy import inspect, text
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import text
 from tests.coded import raises
 from tests.present import present
 
@@ -16,6 +19,7 @@ from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, Store, replay_journal, store_place
 from skisnow.campaign.store.engine import database_errors, writing
 from skisnow.campaign.store.engine import reading as reading_of
+from skisnow.campaign.store.migrations import alembic_config, downgrade, upgrade
 from skisnow.campaign.store.schema import REVISION, metadata
 
 from .postgresql_server import PASSWORD, QUOTED, Server
@@ -61,10 +65,20 @@ def test_verify_finds(server: Server, statements: list[str], said: str, tmp_path
     assert any(said in finding for finding in found), found
 
 
-def test_an_empty_database_gets_the_tables(server: Server) -> None:
-    with Store.open(server.new_database()) as store, store.engine.connect() as connection:
-        assert set(inspect(connection).get_table_names()) == set(metadata.tables)
-        assert connection.execute(text("SELECT version_num FROM alembic_version")).scalar_one() == REVISION
+def test_tables_equal_migrations_in_both_directions(server: Server) -> None:
+    with Store.open(server.new_database()) as store:
+        with store.engine.connect() as connection:
+            context = MigrationContext.configure(connection, opts={"compare_type": True})
+            assert compare_metadata(context, metadata) == []
+        revisions = [script.revision for script in ScriptDirectory.from_config(alembic_config()).walk_revisions()]
+        for _ in revisions:
+            with writing(store.engine) as connection:
+                downgrade(connection, "-1")
+        with writing(store.engine) as connection:
+            upgrade(connection)
+        with store.engine.connect() as connection:
+            assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+            assert connection.execute(text("SELECT version_num FROM alembic_version")).scalar_one() == REVISION
 
 
 ENTER = """

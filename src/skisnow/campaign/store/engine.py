@@ -30,8 +30,8 @@ from ..._support.sqlite_file import (
     primary_code,
     require_schema,
 )
-from .schema import APPLICATION_ID, create_tables, metadata
-from .server import ServerAddress, StorePlace, is_empty, lock_for_writing, open_server, reason
+from .schema import APPLICATION_ID, metadata
+from .server import ServerAddress, StorePlace, lock_for_writing, needs_migration, open_server, reason
 
 _DAMAGED: Final = Message("the file is damaged; restore a backup, or export the readable part")
 _NO_STORE: Final = Message("this file is not a store; name another file")
@@ -149,7 +149,7 @@ def is_file(connection: Connection) -> bool:
 
 
 def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Connect to the database, and create the tables of an empty one.
+    """Connect to the database and bring its schema up to date.
 
     Raises StoreError: it is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
@@ -165,7 +165,7 @@ def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> En
 def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
     try:
-        is_new = _is_new(engine, path)
+        is_outdated = _is_outdated(engine, path)
     except DBAPIError as error:
         # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
         # is writing, and SQLite can read the file as immutable.
@@ -174,9 +174,9 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
             raise
         engine = _engine(path, "ro&immutable=1", busy_timeout_s)
-        is_new = _is_new(engine, path)
-    if is_new:
-        _create_store(engine, path, busy_timeout_s)
+        is_outdated = _is_outdated(engine, path)
+    if is_outdated:
+        _bring_up_to_date(engine, path, busy_timeout_s)
     _require_tables(engine, path)
     return engine
 
@@ -231,16 +231,27 @@ def _revision(connection: Connection, path: Path) -> str | None:
     return versions[0]
 
 
-def _is_new(engine: Engine, path: Path) -> bool:
+def _is_outdated(engine: Engine, path: Path) -> bool:
     with reading(engine) as connection:
-        return is_empty(_revision(connection, path), path)
+        return needs_migration(_revision(connection, path), path)
 
 
-def _create_store(engine: Engine, path: Path, busy_timeout_s: float) -> None:
+def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
+    from .migrations import upgrade
+
     _use_write_ahead_log(engine, busy_timeout_s)
-    with writing(engine) as connection:
-        if is_empty(_revision(connection, path), path):  # else another process was faster
-            create_tables(connection)
+    with engine.connect() as connection:
+        # Some migrations rebuild tables, which foreign keys would prevent. They can only be switched off outside of a
+        # transaction, and are checked before its end.
+        connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
+        with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+            if not needs_migration(_revision(connection, path), path):
+                return  # another process was faster
+            upgrade(connection)
+            if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
+                raise StoreError(
+                    "{path} contains rows with invalid references; it was not changed. Restore a backup."
+                ).tag("damaged", path=path)
 
 
 def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:

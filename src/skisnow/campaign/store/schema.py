@@ -3,7 +3,7 @@
 A campaign is a list of paths, each with a content. A content is a SHA-256 and its bytes in chunks, so that a file of
 any size needs the memory of one chunk. Campaigns that share a file share its content.
 
-A change of these tables needs a new ``REVISION``, and a migration of the stores that exist.
+A change of these tables needs a migration of the stores that exist and a new ``REVISION``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from sqlalchemy import (
     BigInteger,
     CheckConstraint,
     Column,
-    Connection,
     ForeignKey,
     ForeignKeyConstraint,
     Index,
@@ -24,11 +23,10 @@ from sqlalchemy import (
     String,
     Table,
     Text,
-    insert,
 )
 
 REVISION: Final = "0005"
-"""Revision of these tables, which each store states; earlier ones are of development versions."""
+"""Newest migration; tests compare it with the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
 """Number in the file's header ("SkiS") that tells a store from other people's SQLite files."""
@@ -47,9 +45,6 @@ metadata = MetaData(
         "pk": "pk_%(table_name)s",
     }
 )
-
-revision = Table("alembic_version", metadata, Column("version_num", String(32), primary_key=True))
-"""One row with the revision of the store; the table's name is that of development versions."""
 
 campaign = Table(
     "campaign",
@@ -124,11 +119,3 @@ journal_entry = Table(
 """Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts;
 ``once``: what tells an entry that is sent again from a new one; ``sha256``: of all that the entry says; ``uid``: what
 the entry is called in every store that has it. Older stores have a further column ``sums``, which is not read."""
-
-
-def create_tables(connection: Connection) -> None:
-    """Create the tables of an empty store, inside the connection's transaction."""
-    metadata.create_all(connection)
-    connection.execute(insert(revision).values(version_num=REVISION))
-    if connection.dialect.name == "sqlite":
-        connection.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")

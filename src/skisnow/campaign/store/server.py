@@ -17,7 +17,7 @@ from sqlalchemy.exc import ArgumentError
 
 from ..._support.errors import StoreError
 from ..._support.messages import Message
-from .schema import APPLICATION_ID, MARK, REVISION, create_tables
+from .schema import APPLICATION_ID, MARK, REVISION
 
 CONNECT_TIMEOUT_S: Final = 10
 _SILENT_S: Final = 60
@@ -88,7 +88,7 @@ def reason(error: BaseException, address: ServerAddress) -> str:
 
 
 def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Connect to the database, and create the tables of an empty one.
+    """Connect to the database and bring its tables up to date.
 
     Raises StoreError: psycopg is not installed; the database contains no store, a store of a newer program, or other
         tables.
@@ -107,11 +107,8 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
             raise StoreError("There is no store at {address}; add a campaign first, or name another place.").tag(
                 "no_store", address=address
             )
-        if is_empty(revision, address):
-            with engine.begin() as connection:
-                lock_for_writing(connection)
-                if is_empty(_revision(connection, address), address):  # else another program was faster
-                    create_tables(connection)
+        if needs_migration(revision, address):
+            _bring_up_to_date(engine, address)
     except BaseException:
         engine.dispose()
         raise
@@ -188,17 +185,30 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
     return str(versions[0])
 
 
-def is_empty(revision: str | None, place: object) -> bool:
-    """True if a place without a revision has no store yet.
+def needs_migration(revision: str | None, place: object) -> bool:
+    """True if a store with that revision needs a migration.
 
-    Raises StoreError: this program does not know the revision.
+    Raises StoreError: this program does not know the migration.
     """
-    if revision not in (None, REVISION):
+    if revision == REVISION:
+        return False  # the usual case: alembic need not even be imported
+    from .migrations import is_known
+
+    if revision is not None and not is_known(revision):
         raise StoreError(
             "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
             "skisnow, or name another store."
         ).tag("unknown_schema", place=place, revision=revision, known=REVISION)
-    return revision is None
+    return True
+
+
+def _bring_up_to_date(engine: Engine, address: ServerAddress) -> None:
+    from .migrations import upgrade
+
+    with engine.begin() as connection:
+        lock_for_writing(connection)
+        if needs_migration(_revision(connection, address), address):  # else another program was faster
+            upgrade(connection)
 
 
 _SERVER: Final = re.compile(r"(postgresql|postgres)(\+psycopg)?://", re.IGNORECASE)

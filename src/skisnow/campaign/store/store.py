@@ -86,7 +86,7 @@ class Store(Shown):
     def open(
         cls, path: Path | str | ServerAddress | None = None, *, create: bool = True, busy_timeout_s: float = 30.0
     ) -> Self:
-        """Open a store.
+        """Open a store, and migrate it to the current schema.
 
         path: SQLite file, or a database as ``postgresql://USER@HOST/DATABASE`` (default: `default_path`).
         create: True to create a missing file with its folders, or missing tables in the database.
