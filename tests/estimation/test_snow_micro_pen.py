@@ -222,7 +222,7 @@ def test_recordings_without_plate_tests_are_a_campaign(tmp_path: Path) -> None:
     assert (relation["hand_hardness"], relation["hand_hardness_index"]) == ("P-", pytest.approx(3.52, abs=0.01))
     assert "hand hardness P-, index 3.52 (van Herwijnen and Pielmeier 2016)" in summary(analysis)
     notebook = analysis._repr_html_()
-    assert "P-" in notebook and "not H_V" in notebook and "<svg" in notebook
+    assert "P-" in notebook and "not H_V" in notebook
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -13,7 +13,7 @@ import numpy as np
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM, Facts, NotebookFigure, Shown, amount
+from .._support.units import MM, Facts, Shown, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine
@@ -216,11 +216,6 @@ class Equilibrium(Shown):
             ("warnings", str(len(self.warnings))),
         )
         return Facts(self.outcome.replace("_", " "), rows)
-
-    def _notebook_figure(self) -> NotebookFigure | None:
-        depth = self.edge_depth
-        lines = () if depth is None else [(self.station[depth > 0.0], depth[depth > 0.0] / MM)]
-        return NotebookFigure("station (m), tip at the right", "edge depth (mm)", lines)
 
 
 def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:

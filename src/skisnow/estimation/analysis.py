@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.errors import require_range
-from .._support.units import MM, Facts, NotebookFigure, Shown, amount, span
+from .._support.units import Facts, Shown, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..geometry import GeometryForm
@@ -188,12 +188,6 @@ class Analysis(Shown):
             *(_relation_facts(row) for row in self.results.get("published_relations", ())),
         ]
         return Facts(f"of {self.campaign.name!r}", tuple(rows))
-
-    def _notebook_figure(self) -> NotebookFigure | None:
-        tests = self.campaign.penetration
-        if tests is None:
-            return self.snow_micro_pen._notebook_figure() if self.snow_micro_pen else None
-        return NotebookFigure("depth (mm)", "load (N)", [(tests.penetration_depth / MM, tests.load)], points=True)
 
 
 def _relation_facts(row: dict[str, Any]) -> tuple[str, str]:

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray
-from .._support.units import MM, Facts, NotebookFigure, Shown
+from .._support.units import MM, Facts, Shown
 from ..campaign.snow_micro_pen import (
     SnowMicroPenProfile,
     SnowMicroPenRecordings,
@@ -24,8 +24,6 @@ from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of
 
 OVERLAP: Final = 0.5
 """Share of a window that the next one begins in (modelling assumption, as in the instrument's own program)."""
-MOST_LINES: Final = 4
-"""Recordings in the small figure of a notebook."""
 CANCELLED: Final = "cancelled"
 NO_SURFACE: Final = "no_surface"
 TOO_SHORT: Final = "too_short"
@@ -96,15 +94,6 @@ class SnowMicroPenAnalysis(Shown):
     def _repr_facts(self) -> Facts:
         used = sum(recording.is_used for recording in self.evaluated)
         return Facts(f"{used} of {len(self.evaluated)} recordings used")
-
-    def _notebook_figure(self) -> NotebookFigure | None:
-        settings = self.recordings.settings
-        lines: list[tuple[FloatArray, FloatArray]] = []
-        for index, recording in enumerate(self.evaluated):
-            if recording.is_used and len(lines) < MOST_LINES:
-                drawn = depth_profile(self.recordings.profile(index), settings, recording.surface)
-                lines.append((drawn.depth / MM, drawn.force))
-        return NotebookFigure("depth (mm)", "force (N)", lines) if lines else None
 
     @property
     def mean_force(self) -> FloatArray:

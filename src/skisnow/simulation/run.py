@@ -10,7 +10,7 @@ from typing import Any, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.units import DEGREE, MM, Facts, NotebookFigure, Shown, amount, field_facts, name_with_values, span
+from .._support.units import DEGREE, MM, Facts, Shown, amount, field_facts, name_with_values, span
 from ..contact import Laws
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
@@ -221,7 +221,7 @@ class Run(Shown):
         Returns: Of report.html.
         Raises OutputError: a file cannot be written.
         """
-        from ..report.run.folder import write_run
+        from ..report.run.page import write_run
 
         return write_run(self, folder)
 
@@ -262,10 +262,6 @@ class Run(Shown):
             ("computed in", f"{self.steps} steps, {amount(self.wall_s, 's')}"),
         )
         return Facts(self.outcome.replace("_", " "), rows)
-
-    def _notebook_figure(self) -> NotebookFigure:
-        x, y = self.place[:, 0], self.place[:, 1]
-        return NotebookFigure("down the fall line (m)", "to the left (m)", [(x, y)], equal=True)
 
     @property
     def speed(self) -> FloatArray:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import Facts, NotebookFigure, Shown, amount
+from .._support.units import Facts, Shown, amount
 from ..parameters import APART
 from .checks import (
     STRAIGHT,
@@ -198,9 +198,6 @@ class Ski(Shown):
             ("mass", amount(self.mass, "kg")),
         )
         return Facts(repr(self.name), rows)
-
-    def _notebook_figure(self) -> NotebookFigure:
-        return NotebookFigure("station (m), tip at the right", "width (mm)", [(self.station, self.width * 1e3)])
 
     @property
     def length(self) -> float:

@@ -7,7 +7,7 @@ from typing import Annotated, Final, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, NotebookFigure, Shown, amount, span
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount, span
 from ..parameters import Allowed, Label, Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]
@@ -122,12 +122,6 @@ class SnowProperties(Shown):
             ("u_y", _with_interval(self.shear_displacement, self.shear_displacement_interval, MM, "mm")),
         )
         return Facts(self.source, rows)
-
-    def _notebook_figure(self) -> NotebookFigure:
-        depths = (0.0, 10.0)
-        hardnesses = (self.snow_hardness, *(self.snow_hardness_interval or ()))
-        lines = [(depths, [hardness / N_PER_MM3 * depth for depth in depths]) for hardness in hardnesses]
-        return NotebookFigure("depth (mm)", "pressure (N/mm²)", lines)
 
 
 def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
