@@ -13,8 +13,8 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from skisnow import load_scenario, simulate
-from skisnow.replay.binary import replay_bytes
 from skisnow.replay.from_run import replay_of_run
+from skisnow.replay.page import replay_bytes
 
 SCENARIO: Final = "slalom-20-gates"
 GATES: Final = 4

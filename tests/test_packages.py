@@ -45,7 +45,7 @@ UPWARD = {
     ("skisnow.report.turn.chain", "skisnow.report.turn.sentences"),
     ("skisnow.scenario.scenario", "skisnow.scenario.building"),
     ("skisnow.simulation.run", "skisnow.report.run.drawings"),
-    ("skisnow.simulation.run", "skisnow.report.run.folder"),
+    ("skisnow.simulation.run", "skisnow.report.run.page"),
     ("skisnow.simulation.run", "skisnow.report.run.file"),
     ("skisnow.simulation.run", "skisnow.simulation.run_forces"),
 }

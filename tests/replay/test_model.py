@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
-from skisnow.replay.binary import ARRAY_TYPES
 from skisnow.replay.meshes import _strips, linear_light, round_above
+from skisnow.replay.page import ARRAY_TYPES
 from skisnow.replay.replay import groove_times, nearest_frame, quaternions
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate

@@ -9,7 +9,7 @@ import pytest
 
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, moving_replay_model, replay_of_run, ski_edges, write_moving_replay_model
-from skisnow.replay.binary import select_moments
+from skisnow.replay.page import select_moments
 from skisnow.scenario import Profile, load_scenario
 from skisnow.simulation.run import Run
 from skisnow.simulation.simulated_run import simulate

@@ -16,7 +16,6 @@ from skisnow.replay import (
     moving_replay_model,
     replay_bytes,
     replay_model,
-    replay_of_bytes,
     replay_of_file,
     replay_of_run,
 )
@@ -43,6 +42,7 @@ from tests.present import present
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile, Playing
+from .held import unpacked
 from .test_of_run import written
 
 HEIGHT = 1.76
@@ -159,20 +159,20 @@ def test_a_body_that_legs_cannot_reach_is_drawn_all_the_same(run: Run) -> None:
 
 
 def test_bytes_and_file_hold_the_skier_and_its_gates(run: Run, replay: Replay, tmp_path: Path) -> None:
-    back = replay_of_bytes(replay_bytes(replay))
-    assert back.skier is not None and replay.skier is not None
-    assert back.skier.joints == pytest.approx(replay.skier.joints, abs=5e-5)
+    head, back = unpacked(replay_bytes(replay))
+    assert replay.skier is not None
+    assert back["skier_joints"] == pytest.approx(replay.skier.joints, abs=5e-5)
     result = present(run_gates(run))
-    assert replay.gate_times is not None and back.gate_times is not None
+    assert replay.gate_times is not None
     assert replay.gate_times.tolist() == [time - run.time[0] for time in result.times if time is not None]
-    assert back.gate_times == pytest.approx(replay.gate_times, abs=1e-6)
+    assert back["gate_time"] == pytest.approx(replay.gate_times, abs=1e-6)
     ended = replay_of_run(replace(run, scenario=replace(run.scenario, course=None)))
     assert ended.gate_times is None
     folder = written(run, tmp_path, **{"course.file": None, "course.name": None})
     of_file = replay_of_file(folder)
     assert of_file.skier is not None
     assert of_file.skier.height == pytest.approx(HEIGHT)
-    assert back.skier.weight == of_file.skier.weight == 75.0 * run.scenario.gravity
+    assert head["skier"]["weight"] == of_file.skier.weight == 75.0 * run.scenario.gravity
     assert of_file.skier.joints == pytest.approx(replay.skier.joints, abs=1e-6)
     assert dict(of_file.facts)["Skis"].startswith("giant-slalom, ")
 
@@ -182,7 +182,7 @@ def test_a_gate_that_was_not_reached_has_no_time(run: Run) -> None:
     gates = (*run.scenario.course.gates, Gate(name="3", turning=(500.0, 0.0), side="left"))  # type: ignore[union-attr]
     late = replay_of_run(replace(run, scenario=replace(run.scenario, course=Course(gates=gates, source="of the test"))))
     assert np.isnan(present(late.gate_times)).tolist() == [False, False, True]
-    back = present(replay_of_bytes(replay_bytes(late)).gate_times)
+    back = unpacked(replay_bytes(late))[1]["gate_time"]
     assert np.isnan(back).tolist() == [False, False, True]
 
 

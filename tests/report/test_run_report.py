@@ -11,8 +11,7 @@ from matplotlib.text import Text
 
 from skisnow._support.units import DEGREE
 from skisnow.report.figures.drawing import FORMS
-from skisnow.report.run.folder import write_run
-from skisnow.report.run.page import FIGURES
+from skisnow.report.run.page import FIGURES, write_run
 from skisnow.report.run.tables import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
 from skisnow.simulation.run import LOST, STORED, Run, SkiHistory

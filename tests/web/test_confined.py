@@ -15,7 +15,7 @@ from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.studies import read_study
 from skisnow.web.page_requests import address, analysis, correction_address, entry_address, export, required_id
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
-from skisnow.web.subprocesses import BOUNDS, Bounds, confined
+from skisnow.web.uploads import BOUNDS, Bounds, confined
 from skisnow.web.widgets import _short
 from skisnow.web.words import typed_number
 from tests.coded import raises

@@ -13,7 +13,7 @@ from skisnow.campaign.problems import lines_of
 from skisnow.campaign.reference import reference_campaign
 from skisnow.estimation import analyse
 from skisnow.report import write_report
-from skisnow.report.run.folder import write_run
+from skisnow.report.run.page import write_run
 
 from ..report.runs import circle_run
 from .browser_types import Page

@@ -216,7 +216,7 @@ def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) 
 
 def _front(options: argparse.Namespace, task: DesignTask) -> int:
     """Write the Pareto front of two targets."""
-    from ..design.front import design_front, write_front
+    from ..design.search import design_front, write_front
 
     with announced("searching"):
         front = design_front(task, points=options.front)

@@ -109,16 +109,12 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
 def _write_replay(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
     from ..replay import write_moving_replay_model, write_replay, write_replay_model
     from ..replay.model import require_moment
-    from ..report.run.folder import link_replay
 
-    own = options.folder if options.folder.is_dir() else options.folder.parent
-    folder = options.out or own
+    folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
     if options.moment_s is not None:
         require_moment(shown, options.moment_s)
     with announced("writing"):
         written = [write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language)]
-        if folder.resolve() == own.resolve() and (page := link_replay(folder)) is not None:
-            print(f"{page} now has a link to the replay.", file=sys.stderr)
         if options.model:
             written.append(folder / "replay.glb")
             write_moving_replay_model(shown, written[-1], exaggeration=options.exaggeration)

@@ -124,7 +124,7 @@ def _write_and_print(
     else:
         from ..report.summaries import simulate_summary
 
-        print(simulate_summary(summary, title=scenario_input.title), flush=True)
+        print(simulate_summary(result, title=scenario_input.title, verification=verification), flush=True)
     print_warnings((*near, *run_warnings(result)))
     if options.boots_out is not None:
         from ..simulation.run_tables import write_boots
@@ -149,8 +149,7 @@ def _write_joints(run: Run, boots: Path) -> None:
 
 
 def _write_run(options: argparse.Namespace, result: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
-    from ..report.run.folder import write_run
-    from ..report.run.page import REPLAY
+    from ..report.run.page import REPLAY, write_run
 
     folder: Path = options.out
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from .front import FrontPoint, design_front
 from .measured_ski import Measured, MeasuredSki, measured_ski
 from .result import Design, DesignRow
-from .search import design_ski
+from .search import FrontPoint, design_front, design_ski
 from .ski_tables import Mapped
 from .task import DesignTask, read_design
 

@@ -20,8 +20,7 @@ from ..carving.solve import Solution
 from ..ski import Ski
 from ..ski.ski_file import ski_of_keys
 from ..snow import SnowProperties
-from .task import DesignTask, Goal
-from .variables import COMBINED, combined_names, designed_keys, start_value
+from .task import COMBINED, DesignTask, Goal, combined_names, designed_keys, start_value
 
 
 @dataclass(slots=True, eq=False)

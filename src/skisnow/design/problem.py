@@ -10,8 +10,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import SolverError
 from .evaluation import Evaluator
-from .task import Goal
-from .variables import designed_keys, start_value
+from .task import Goal, designed_keys, start_value
 
 REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached, and breach at which a limit counts as kept."""

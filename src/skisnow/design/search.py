@@ -1,21 +1,23 @@
-"""Search of a design from several starts."""
+"""Search of a design from several starts, and the Pareto front of two goals."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.errors import SolverError
+from .._support.errors import ParameterError, SolverError
+from .._support.staging import prepare_folder, staged, write_file
 from .descent import Descent
 from .evaluation import Evaluator
 from .problem import REACHED, Search
 from .result import Design, Start, design_of
-from .task import DesignTask, design_task, read_design
+from .task import DesignTask, Goal, design_task, read_design
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -109,3 +111,108 @@ def begins_of(evaluator: Evaluator) -> list[FloatArray]:
     task = evaluator.task
     random = np.random.default_rng(task.seed)
     return [evaluator.start, *random.uniform(0.0, 1.0, (task.starts - 1, len(task.variables)))]
+
+
+@dataclass(frozen=True, slots=True)
+class FrontPoint:
+    """A design of the front: its largest relative deviations from both targets (%), and its variables."""
+
+    first_percent: float
+    second_percent: float
+    values: dict[str, float]
+
+
+def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: int = 9) -> tuple[FrontPoint, ...]:
+    """Pareto front of the two targets of a task; limits and constraints hold everywhere.
+
+    The second target may deviate by even steps, from the design for it alone to the design for the first alone; at
+    each step the design nearest to the first target is searched from the task's starts and from the design before.
+
+    Parameters
+    ----------
+    task
+        As of `skisnow.design_ski`, with exactly two goals that have a target.
+    points
+        Number of designs, 2 or more; fewer where both targets can be reached together.
+
+    Raises
+    ------
+    ParameterError
+        The task has another number of targets, or the number of points is below 2.
+    SolverError
+        No start led to a ski with an equilibrium.
+    """
+    task = task_of(task)
+    targets = [goal for goal in task.goals if goal.target is not None]
+    if len(targets) != 2 or points < 2:
+        raise ParameterError(
+            "a front needs two goals with a target and two points or more; there are {targets} and {points}."
+        ).tag("out_of_range", targets=len(targets), points=points)
+    first, second = targets
+    limits = [goal for goal in task.goals if goal.target is None]
+    evaluator = Evaluator(task)
+    begins = begins_of(evaluator)
+    ends = [_best_design(evaluator, [goal, *limits], begins) for goal in (first, second)]
+    low, high = (_deviation(evaluator, second, end) for end in reversed(ends))
+    found = [ends[1]]
+    for allowed in np.linspace(low, high, points)[1:-1]:
+        bounds = [_limit(second, allowed, 1.0), _limit(second, allowed, -1.0)]
+        found.append(_best_design(evaluator, [first, *limits, *bounds], [*begins, found[-1]]))
+    return _front(evaluator, first, second, [*found, ends[0]])
+
+
+def write_front(front: Sequence[FrontPoint], folder: Path) -> tuple[Path, ...]:
+    """Write ``front.csv`` and ``front.json``; returns their paths.
+
+    Raises OutputError: a file cannot be written, or a ``front.csv`` is not from an earlier front.
+    """
+    rows = [["first_percent", "second_percent", *front[0].values]]
+    rows += [
+        [f"{n:.9g}" for n in (point.first_percent, point.second_percent, *point.values.values())] for point in front
+    ]
+    contents = {
+        "front.csv": "".join(f"{','.join(row)}\n" for row in rows),
+        "front.json": json.dumps([asdict(point) for point in front], indent=1) + "\n",
+    }
+    prepare_folder(folder)
+    with staged(folder, last="front.json") as stage:
+        for name, content in contents.items():
+            write_file(stage.path / name, content)
+    return tuple(folder / name for name in contents)
+
+
+def _limit(goal: Goal, allowed: float, side: float) -> Goal:
+    """The goal as a limit of its deviation on one side."""
+    curve = goal.factors + side * allowed * np.max(goal.factors)
+    most, least = (goal.target, None) if side > 0.0 else (None, goal.target)
+    return replace(goal, target=None, at_most=most, at_least=least, curve=tuple(curve.tolist()))
+
+
+def _deviation(evaluator: Evaluator, goal: Goal, z: FloatArray) -> float:
+    return float(np.max(np.abs(goal.deviations(evaluator.goal_values(goal, z)))))
+
+
+def _best_design(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArray]) -> FloatArray:
+    """Variables (n,) of the best design for these goals together, of searches from all starts."""
+    best = searched_starts(Search(evaluator, goals), begins)[0]
+    if best.end is None:
+        raise SolverError("no start led to a ski with an equilibrium. Narrow the bounds.").tag("no_equilibrium")
+    return best.end
+
+
+def _front(evaluator: Evaluator, first: Goal, second: Goal, designs: Sequence[FloatArray]) -> tuple[FrontPoint, ...]:
+    """The designs in the order of the second deviation, without those that another one beats in both."""
+    names = [variable.name for variable in evaluator.task.variables]
+    made = [
+        FrontPoint(
+            100.0 * _deviation(evaluator, first, z),
+            100.0 * _deviation(evaluator, second, z),
+            dict(zip(names, evaluator.values(z).tolist(), strict=True)),
+        )
+        for z in designs
+    ]
+    front: list[FrontPoint] = []
+    for point in sorted(made, key=lambda each: (each.second_percent, each.first_percent)):
+        if not front or point.first_percent < front[-1].first_percent - 1e-4:
+            front.append(point)
+    return tuple(front)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
@@ -20,10 +20,9 @@ from ..carving.outputs import FORCE_ALONG_EDGE, OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
 from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
 from ..ski import Ski
-from ..ski.editing import shape_parameters
+from ..ski.editing import changed_keys, shape_parameters
 from ..ski.file_keys import LISTS
 from ..ski.ski_file import Sources
-from .variables import COMBINED, Variable
 
 FEWEST_STARTS: Final = 8  # starts of the search: a worst case over contact with snow has several local optima
 INTERVALS: Final = "intervals"  # key of a condition that also counts at the ends of its snow's intervals
@@ -291,3 +290,57 @@ def _monotone(ski: Ski, key: str) -> list[Constraint]:
     return [
         Constraint(terms={f"{key}[{high + 1}]": 1.0, f"{key}[{low + 1}]": -1.0}, at_least=0.0) for low, high in pairs
     ]
+
+
+COMBINED: Final = {
+    "sidecut_mm": ("tip_width_mm", "tail_width_mm"),
+    "EI_factor": ("EI_N_m2",),
+    "GJ_factor": ("GJ_N_m2",),
+}
+"""Added to tip and tail width (mm); factors of a whole list of stiffness."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable by its name, with bounds in the unit of the ski file."""
+
+    name: str
+    lowest: float
+    highest: float
+
+    @property
+    def width(self) -> float:
+        """Distance of the bounds."""
+        return self.highest - self.lowest
+
+
+def combined_names(name: str) -> tuple[str, ...]:
+    """Ski parameters from whose derivatives that of a variable follows."""
+    if name == "sidecut_mm":
+        return tuple(f"ski.{key}" for key in COMBINED[name])
+    if name in COMBINED:
+        return (f"edit.{COMBINED[name][0]}",)
+    return (f"ski.{name}",)
+
+
+def start_value(keys: Mapping[str, Any], name: str) -> float:
+    """Value of a variable at the ski to begin with."""
+    if name in COMBINED:
+        return 0.0 if name == "sidecut_mm" else 1.0
+    row = name.partition("[")
+    if row[1]:
+        return float(keys[row[0]][int(row[2].rstrip("]")) - 1])
+    return float(keys.get(name, 0.0))
+
+
+def designed_keys(keys: Mapping[str, Any], variables: Sequence[Variable], values: Sequence[float]) -> dict[str, Any]:
+    """Keys of the ski file with the values of the variables; combinations act on top of the keys."""
+    named = {variable.name: float(value) for variable, value in zip(variables, values, strict=True)}
+    out = changed_keys(keys, {name: value for name, value in named.items() if name not in COMBINED})
+    for name, value in named.items():
+        if name == "sidecut_mm":
+            out |= {key: out[key] + value for key in COMBINED[name]}
+        elif name in COMBINED:
+            key = COMBINED[name][0]
+            out[key] = [value * number for number in out[key]]
+    return out

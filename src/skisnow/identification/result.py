@@ -14,7 +14,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.messages import Message
-from .._support.units import Facts, Shown, amount, ends, span
+from .._support.units import Facts, Shown, amount, ends
 from .._support.user_files.json_text import json_number
 from .parameter import Parameter
 from .problem import Fit
@@ -36,6 +36,10 @@ REASONS: dict[Outcome, str] = {
     "too_few_points": Message("There are too few points for these parameters; nothing was identified."),
     "interrupted": Message("The search was stopped; the values are the best that were seen until then."),
 }
+
+
+def _ends_text(interval: Interval) -> str:
+    return " to ".join("open" if end is None else f"{end:.4g}" for end in interval)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -66,10 +70,12 @@ class Identified(Shown):
     @property
     def in_words(self) -> str:
         """The value with its interval in the key's unit, and whether the data determine it."""
-        low, high = self.interval or (None, None)
         text = amount(self.value, self.parameter.unit)
-        if low is not None and high is not None:
-            text = f"{text} ({span(low, high)})"
+        if self.interval is not None:
+            text += f" ({_ends_text(self.interval)})"
+        for name in ("profile", "bootstrap", "posterior"):
+            if (further := getattr(self, f"{name}_interval")) is not None:
+                text += f", {name} {_ends_text(further)}"
         return f"{text}{'' if self.identifiable else ', not determined'}{', at a bound' if self.at_bound else ''}"
 
 

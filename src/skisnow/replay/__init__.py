@@ -1,9 +1,8 @@
 """Replay of a simulated run: its arrays, their compact binary format, pages and glTF models."""
 
-from .binary import replay_bytes, replay_of_bytes
 from .from_run import replay_of_run
 from .model import moving_replay_model, replay_model, write_moving_replay_model, write_replay_model
-from .page import replay_page, write_replay
+from .page import replay_bytes, replay_page, write_replay
 from .replay import Replay, ReplayTrack, measured_track, ski_edges
 from .run_file import replay_of_file
 from .skier import joint_columns
@@ -16,7 +15,6 @@ __all__ = [
     "moving_replay_model",
     "replay_bytes",
     "replay_model",
-    "replay_of_bytes",
     "replay_of_file",
     "replay_of_run",
     "replay_page",

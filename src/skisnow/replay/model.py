@@ -13,7 +13,6 @@ from scipy.spatial.transform import Rotation
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.staging import write_file
-from .binary import select_moments, thin_replay
 from .meshes import (
     CORNERS,
     Glb,
@@ -26,6 +25,7 @@ from .meshes import (
     surface_heights,
     unloaded_ski_mesh,
 )
+from .page import select_moments, thin_replay
 from .replay import SKI_NAMES, Replay, ReplayBoots, nearest_frame, rotation_of, without_sign_jumps
 from .skier import JOINTS, part_poses, skier_mesh, skier_parts
 

@@ -20,6 +20,7 @@ from .._support.messages import (
     template,
     translations,
 )
+from .._support.units import Shown
 
 Style: TypeAlias = Literal["typeset", "plain", "latex"]
 """typeset: in the current language, with Unicode minus and powers; plain: for a terminal; latex: for siunitx."""
@@ -99,6 +100,12 @@ def named_rows(rows: Iterable[tuple[str, str]]) -> list[str]:
     return [f"{name.ljust(width)}  {text}" for name, text in rows]
 
 
+def facts_lines(result: Shown) -> list[str]:
+    """Lines for a terminal: title and rows of the result's repr."""
+    title, rows = result._repr_facts()
+    return [title, *(f"  {line}" for line in named_rows(rows))]
+
+
 def json_text(contents: Mapping[str, Any]) -> str:
     """JSON with one space of indentation; NaN and infinity raise ValueError."""
     return json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
@@ -163,41 +170,27 @@ def date_words(day: date) -> str:
     >>> date_words(date(2026, 1, 9))
     '9 January 2026'
     """
-    return f"{_day_and_month(day)} {day.year}"
-
-
-def _day_and_month(day: date) -> str:
-    return f"{_day(day)} {Message(_MONTHS[day.month - 1])}"
-
-
-def _day(day: date) -> str:
-    return f"{day.day}" if current_language() == ENGLISH else f"{day.day}."
+    number = f"{day.day}" if current_language() == ENGLISH else f"{day.day}."
+    return f"{number} {Message(_MONTHS[day.month - 1])} {day.year}"
 
 
 def days_words(first: str, last: str) -> Markup:
-    """First and last day of a campaign (ISO dates; other text is not changed); a common month and year appear once.
+    """First and last day of a campaign (ISO dates; other text is not changed).
 
     >>> print(days_words("2026-01-09", "2026-01-12").striptags())
-    9 to 12 January 2026
-    >>> print(days_words("2026-01-30", "2026-02-02").striptags())
-    30 January to 2 February 2026
+    9 January 2026 to 12 January 2026
     >>> print(days_words("2025-12-30", "2026-02-30").striptags())
     30 December 2025 to 2026-02-30
     """
-    begin, end = _date(first), _date(last)
-    words, last_words = (date_words(day) if isinstance(day, date) else day for day in (begin, end))
-    if first == last:
-        return _time_element(first, words)
-    if isinstance(begin, date) and isinstance(end, date) and begin.year == end.year:
-        words = _day(begin) if begin.month == end.month else _day_and_month(begin)
-    return prose("{low} to {high}", low=_time_element(first, words), high=_time_element(last, last_words))
+    begin, end = (_time_element(day, _day_words(day)) for day in (first, last))
+    return begin if first == last else prose("{low} to {high}", low=begin, high=end)
 
 
-def _date(text: str) -> date | str:
+def _day_words(day: str) -> str:
     try:
-        return date.fromisoformat(text)
+        return date_words(date.fromisoformat(day))
     except ValueError:
-        return text
+        return day
 
 
 def moment_words(moment: str) -> Markup:

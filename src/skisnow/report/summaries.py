@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Iterator, Mapping
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from .._support.errors import SkisnowWarning
-from ..simulation.run import OPEN_SHARE
+from ..simulation.run_summary import run_gates
 from ..track.course.gates_table import gate_rows
-from .formatting import aligned_rows, named_rows, plain
+from .formatting import aligned_rows, facts_lines, named_rows, plain
 from .pair_verdicts import ski_verdict
 
 if TYPE_CHECKING:
-    from ..identification.result import Identification, Identified, Interval
+    from ..identification.result import Identification
+    from ..simulation.run import Run
     from ..track.course import CourseResult
 
 Json: TypeAlias = Mapping[str, Any]
@@ -180,114 +180,33 @@ def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
 
 
 def identify_summary(result: Identification) -> str:
-    """Outcome, values with intervals, correlations, and effort of the search."""
-    lines = [f"{result.scenario}: {result.outcome.replace('_', ' ')}", result.reason, ""]
-    lines += [f"{name}: {kind}" for name, kind in result.data] + [""] * bool(result.data)
-    rows = [_parameter_row(parameter) for parameter in result.parameters]
-    lines += [line.rstrip() for line in aligned_rows(rows, left=3)]
-    correlations = list(_correlation_lines(result))
-    if correlations:
-        lines += ["", "correlations: " + ", ".join(correlations)]
-    lines += ["", f"points {result.points}, degrees of freedom {result.degrees_of_freedom}", *result.methods]
+    """Outcome, values with intervals, and effort of the search."""
+    lines = [*facts_lines(result), result.reason, *(f"{name}: {kind}" for name, kind in result.data)]
+    lines += [f"degrees of freedom {result.degrees_of_freedom}", *result.methods]
     effort = result.effort
     earlier = f", {effort.kept_simulations} kept from before" if effort.kept_simulations else ""
     lines.append(f"{effort.simulations} simulated runs{earlier}, {plain(effort.wall_s)} s")
     return "\n".join(lines)
 
 
-def _parameter_row(row: Identified) -> tuple[str, str, str]:
-    unit = f" {row.parameter.unit}" if row.parameter.unit else ""
-    others = (
-        ("profile", row.profile_interval),
-        ("bootstrap", row.bootstrap_interval),
-        ("posterior", row.posterior_interval),
-    )
-    error = row.standard_error
-    more = [f"{name} {_interval_text(interval, error)}" for name, interval in others if interval is not None]
-    bound = ["on its bound"] if row.at_bound else []
-    return (
-        row.parameter.key,
-        f"{_rounded(row.value, error)}{unit}",
-        "  ".join([_interval_text(row.interval, error), *more, *bound]),
-    )
-
-
-def _interval_text(interval: Interval | None, error: float | None) -> str:
-    if interval is None:
-        return "no interval"
-    low, high = interval
-    if high is None and low is not None:
-        return f"at least {_rounded(low, error)}"
-    return f"[{_rounded(low, error)}, {_rounded(high, error)}]"
-
-
-def _rounded(value: float | None, error: float | None) -> str:
-    """A value rounded to two digits of its standard error."""
-    if value is None or not error or not 1e-9 < error < 1e5:
-        return plain(value)
-    return f"{value:.{max(1 - math.floor(math.log10(error)), 0)}f}"
-
-
-def _correlation_lines(result: Identification) -> Iterator[str]:
-    names = [row.parameter.name for row in result.parameters]
-    for i in range(len(names)):
-        for j in range(i):
-            r = float(result.correlation[i, j])
-            if math.isfinite(r):
-                yield f"{names[j]} and {names[i]} {r:.2f}"
-
-
-def simulate_summary(summary: Json, *, title: str) -> str:
-    """Outcome of a run with its numbers.
-
-    summary: contents of `skisnow.simulation.run_summary.summary_dict`.
-    """
-    lines = [f"{title}: {summary['outcome'].replace('_', ' ')}"]
-    if summary["remedy"]:
-        lines.append(summary["remedy"])
-    lines += ["", *named_rows(_run_rows(summary))]
-    if "verification" in summary:
-        lines += ["", *_verification_lines(summary["verification"])]
+def simulate_summary(run: Run, *, title: str, verification: Mapping[str, Json] | None = None) -> str:
+    """Outcome of a run with its remedy, numbers, gates and verification."""
+    lines = [f"{title}: {run.outcome.replace('_', ' ')}", *filter(None, [run.remedy]), ""]
+    lines += named_rows(run._repr_facts().rows)
+    if (result := run_gates(run)) is not None:
+        lines.append(_gates_sentence(result))
+    if verification:
+        lines += ["", *_verification_lines(verification)]
     return "\n".join(lines)
 
 
-def _run_rows(summary: Json) -> Iterator[tuple[str, str]]:
-    end = summary["end"]
-    yield "run length", f"{plain(summary['run_length_m'], 4)} m in {plain(summary['simulated_s'], 4)} s"
-    yield "end point", f"x {plain(end['x_m'], 4)} m, y {plain(end['y_m'], 4)} m, z {plain(end['z_m'], 4)} m"
-    yield "heading at the end", f"{plain(end['heading_deg'])} degrees from the fall line, positive left"
-    speed = f"{plain(end['speed_m_per_s'])} m/s at the end, maximum {plain(summary['greatest_speed_m_per_s'])} m/s"
-    yield "speed", speed
-    yield "turn radius", _turn_radius_text(summary)
-    if summary.get("gates_passed") is not None:
-        yield "gates", _gates(summary)
-    yield "energy residual", _residual_text(summary["energy_balance_error"])
-    yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
-    wall, simulated = summary["wall_s"], summary["simulated_s"]
-    rate = f", {plain(simulated / wall)} times real time" if wall and simulated else ""
-    yield "computed in", f"{plain(wall)} s{rate}"
-
-
-def _gates(summary: Json) -> str:
+def _gates_sentence(result: CourseResult) -> str:
     """Number of passed gates, and the time from the first to the last one."""
-    times = [time for time in summary["gate_times_s"] if time is not None]
-    passed = f"{summary['gates_passed']} of {len(summary['gate_times_s'])} passed"
+    times = [time for time in result.times if time is not None]
+    passed = f"{result.passed} of {len(result.times)} gates passed"
     if len(times) < 2:
         return passed
     return f"{passed}, {times[-1] - times[0]:.2f} s between the first and the last that was reached"
-
-
-def _turn_radius_text(summary: Json) -> str:
-    median, minimum = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
-    if median is None:
-        return "none, the run is straight or was over within half a second"
-    return f"median {plain(median)} m, 5 % of the time below {plain(minimum)} m"
-
-
-def _residual_text(error: float | None) -> str:
-    if error is None:
-        return "no energy was exchanged"
-    return f"{plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= OPEN_SHARE else ', too large'}"
 
 
 def _verification_lines(verification: Mapping[str, Json]) -> Iterator[str]:

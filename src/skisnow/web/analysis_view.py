@@ -22,8 +22,7 @@ from .campaign_analysis import (
     Refusal,
     choosable_flags,
 )
-from .elements import Words, add_items, choice, folded, html_words, named
-from .layout import error_sentence, heading, sentence
+from .elements import Words, add_items, choice, error_sentence, folded, heading, html_words, named, sentence
 from .words import language_of, said
 
 LONG_TABLES: Final = {

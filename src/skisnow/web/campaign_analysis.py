@@ -35,8 +35,8 @@ from ..report.campaign.verdicts import verdicts
 from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, local_axes, site_styles
 from .settings import Lab
-from .subprocesses import Worker
 from .transfer import files_in_memory
+from .uploads import Worker
 
 LEFT_OUT: Final = Message("excluded by choice in the lab")
 N_FIGURES: Final = len(DRAWERS) + 2  # maximum number of figures: also those of recordings

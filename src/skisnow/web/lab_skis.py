@@ -16,8 +16,7 @@ from ..ski import Ski, read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
 from .settings import Limits
-from .subprocesses import SKI_BOUNDS, confined
-from .uploads import Unpacking
+from .uploads import SKI_BOUNDS, Unpacking, confined
 from .words import replaced, typed_number
 
 FOLDER: Final = "skis"

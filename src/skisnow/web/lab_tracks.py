@@ -21,7 +21,7 @@ from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
 from .page_requests import free_place, hidden_folder, newest_first, plain_stem
-from .subprocesses import BOUNDS, confined
+from .uploads import BOUNDS, confined
 from .words import replaced, typed_number
 
 TRACKS_FOLDER: Final = "tracks"

@@ -28,8 +28,7 @@ from starlette.responses import RedirectResponse, Response
 from .._support.errors import ParameterError, SkisnowError, StoreError
 from .._support.messages import Message
 from .._support.staging import cannot_write
-from .elements import Words, button
-from .layout import error_sentence, plain_page
+from .elements import Words, button, error_sentence, plain_page
 
 Act: TypeAlias = Callable[[], bool | None]
 ASK: Final = "() => lab.ask(emit)"

@@ -18,19 +18,18 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import ENGLISH, Message, joined, translations
 from .._support.user_files import ContentError, read_json, read_record
-from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
-from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
+from ..replay.page import MODULES, STYLE, in_language, page_words, replay_bytes, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
 from ..report.track.page import file_of_track, page_of_folders, page_of_track, page_of_tracks
 from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import Ski, read_ski
+from .elements import plain_page
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
-from .layout import plain_page
 from .page_requests import add_upload, address, newest_first, uploaded_files
 from .runs import JOB, Job
-from .subprocesses import BOUNDS, confined
+from .uploads import BOUNDS, confined
 from .words import language_of_request
 
 LIST: Final = "/replay"

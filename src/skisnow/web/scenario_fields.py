@@ -10,8 +10,7 @@ from nicegui import ui
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..parameters import InputValue, Quantity
-from .elements import TypedField, choice, field, named
-from .layout import sentence
+from .elements import TypedField, choice, field, named, sentence
 from .words import number_text, plain_number, replaced, said
 
 InputField: TypeAlias = TypedField | ui.select | ui.switch

@@ -26,8 +26,8 @@ from starlette.responses import FileResponse, RedirectResponse, Response
 from .._support.environment import load_certificate
 from .._support.errors import ParameterError
 from .._support.messages import languages
+from .elements import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to
 from .guard import Access, Guard, is_loopback
-from .layout import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to
 from .pages import INNER, PAGES
 from .replay_addresses import FIRST_SCRIPT
 from .settings import PING_EVERY_S, PING_WAIT_S, RECONNECT_S

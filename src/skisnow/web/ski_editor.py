@@ -17,7 +17,7 @@ from .._support.messages import Message
 from ..ski import Ski
 from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
-from .elements import Outcome, Words, add_head, button, field, folded, named
+from .elements import Outcome, Words, add_head, button, error_sentence, field, folded, heading, named, sentence
 from .lab_skis import (
     LISTS,
     MEASURED,
@@ -30,10 +30,9 @@ from .lab_skis import (
     ski_of_texts,
     ski_of_uploads,
 )
-from .layout import error_sentence, heading, sentence
 from .page_requests import add_upload, address, file_input, submit_button, text_input, upload_form, uploaded_files
 from .settings import Lab
-from .subprocesses import SKI_BOUNDS, confined
+from .uploads import SKI_BOUNDS, confined
 from .words import number_text, said, typed_number
 
 POSITION: Final = Message("Position (m)")

@@ -20,8 +20,7 @@ from ..ski.ski_file import Sources
 from ..snow import SnowProperties, published_names, published_snow
 from .campaign_analysis import Choice, Refusal, analyse_files
 from .edit_session import EditSession
-from .elements import Words, choice, option_texts
-from .layout import error_sentence
+from .elements import Words, choice, error_sentence, option_texts
 from .settings import Lab
 from .transfer import files_in_memory
 from .words import estimate_words

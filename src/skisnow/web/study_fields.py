@@ -16,8 +16,7 @@ from .._support.messages import Message, template
 from .._support.user_files import natural_number, toml_text
 from ..carving.question import CARVE_KEYS
 from ..parameters import Quantity
-from .elements import choice, field, named
-from .layout import sentence
+from .elements import choice, field, named, sentence
 from .scenario_fields import field_label, typed_form, with_point
 from .words import number_text, replaced, said, typed_number
 

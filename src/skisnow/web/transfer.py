@@ -34,11 +34,10 @@ from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import FilesInMemory
 from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replay_journal
 from ..estimation.result_rows import first_hardness
-from .layout import error_sentence, plain_page
+from .elements import error_sentence, plain_page
 from .page_requests import add_upload, required_id, uploaded_files
 from .settings import Lab
-from .subprocesses import BOUNDS, confined
-from .uploads import add_uploaded, zip_download, zip_of_campaign
+from .uploads import BOUNDS, add_uploaded, confined, zip_download, zip_of_campaign
 
 IMPORT: Final = "/import"
 

@@ -16,8 +16,7 @@ from nicegui.element import Element
 from .._support.errors import ParameterError
 from .._support.messages import Message, decimal_sign, joined
 from ..report.formatting import significant
-from .elements import Words, button, named
-from .layout import error_sentence, heading, sentence
+from .elements import Words, button, error_sentence, heading, named, sentence
 from .runs import Runs, progress_words
 from .words import language_of, said
 

@@ -11,14 +11,12 @@ from skisnow.interop.opensim.c3d import read_c3d
 from skisnow.interop.opensim.markers import read_trc
 from skisnow.interop.opensim.table import read_motion
 from skisnow.replay import replay_of_file
-from skisnow.replay.binary import replay_bytes, replay_of_bytes
+from skisnow.replay.page import replay_bytes
 from skisnow.report.run.file import write_run_file
-from skisnow.report.run.folder import link_replay
 from skisnow.simulation.run_summary import summary_dict
 from tests.interop.c3d_files import c3d_bytes
 
 from ..binaries import BINARY
-from ..markup import XML
 from ..netcdf import NETCDF
 from ..reader import Reader, single_file
 from ..texts import TEXT
@@ -44,12 +42,6 @@ time\tknee\thip
 0.01\t11\t0.3
 0.02\t12\t0.4
 """
-_PAGE = b"""<html lang="de">
-<p>skisnow</p><dl class="facts">
-<dt>Schnee</dt><dd>S</dd>
-</dl>
-<h2 id="scenario">1</h2></html>
-"""
 
 
 @cache
@@ -62,13 +54,6 @@ def run_files() -> dict[str, bytes]:
 
 
 @cache
-def _replay() -> dict[str, bytes]:
-    with TemporaryDirectory() as name:
-        (Path(name) / "run.nc").write_bytes(run_files()["run.nc"])
-        return {"replay.bin": replay_bytes(replay_of_file(name))}
-
-
-@cache
 def _c3d() -> dict[str, bytes]:
     place = np.random.default_rng(1).normal(0.0, 1.0, (6, 3, 3))
     texts = {"LABELS": ("heel", "toe", "side"), "UNITS": ("m",), "ANGLES": ("knee",)}
@@ -77,7 +62,7 @@ def _c3d() -> dict[str, bytes]:
 
 def _drawn(folder: Path) -> object:
     replay = replay_of_file(folder)
-    return replay_of_bytes(replay_bytes(replay))
+    return replay_bytes(replay)
 
 
 READERS = (
@@ -95,13 +80,5 @@ READERS = (
     Reader(
         name="run.nc", target="run.nc", files=run_files, mutations=NETCDF, read=_drawn,
         covers=("replay.run_file:replay_of_file",),
-    ),
-    single_file(
-        "replay bytes", _replay, lambda path: replay_of_bytes(path.read_bytes()), BINARY,
-        "replay.binary:replay_of_bytes", target="replay.bin",
-    ),
-    Reader(
-        name="report.html", target="report.html", files=lambda: {"report.html": _PAGE}, mutations=XML,
-        read=link_replay, covers=("report.run.folder:link_replay",),
     ),
 )  # fmt: skip

@@ -30,7 +30,7 @@ from skisnow.replay import moving_replay_model, replay_model, replay_of_file
 from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
-from skisnow.web.layout import error_sentence
+from skisnow.web.elements import error_sentence
 from skisnow.web.replay_addresses import RunFolders, add_addresses, show_address
 
 from ..finished import finished

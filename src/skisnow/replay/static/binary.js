@@ -1,4 +1,4 @@
-// A replay's bytes, as skisnow.replay.binary writes them, made into arrays of numbers.
+// A replay's bytes, as skisnow.replay.page writes them, made into arrays of numbers.
 
 const MAGIC = "SKRP";
 const FORMAT = 2;

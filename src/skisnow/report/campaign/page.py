@@ -25,7 +25,6 @@ from ..formatting import days_words, moment_words, significant
 from ..sheet import bibtex, cited_text, render_template
 from ..table import Table, table_csv, table_html
 from ..table_latex import table_latex
-from . import findings
 from .data import ReportData
 from .key_results import headline, key_results
 from .model_figures import model_rmse, residuals
@@ -33,7 +32,14 @@ from .penetration_figures import force_depth, hardness_density, hardness_mean_fo
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
 from .site_figures import sites, snow_profiles
 from .tables import campaign_tables
-from .verdicts import verdicts
+from .verdicts import (
+    caveats,
+    procedure_comparison,
+    readings_used,
+    seating_findings,
+    unloading_findings,
+    verdicts,
+)
 
 RESULTS: Final = "results.json"
 SECTIONS: Final = {
@@ -143,11 +149,11 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
         "report.html",
         **_frame(data),
         key_results=key_results(data),
-        caveats=findings.caveats(data),
-        readings_used=findings.readings_used(data),
-        procedures_compared=findings.procedure_comparison(data),
-        seating_found=findings.seating_findings(data),
-        unloading_found=findings.unloading_findings(data),
+        caveats=caveats(data),
+        readings_used=readings_used(data),
+        procedures_compared=procedure_comparison(data),
+        seating_found=seating_findings(data),
+        unloading_found=unloading_findings(data),
         tables=defaultdict(Markup, tables_html(tables)),
         pictures=pictures,
         missing=missing,

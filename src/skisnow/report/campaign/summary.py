@@ -14,9 +14,8 @@ from ..._support.messages import Message
 from ..._support.units import unit_of_name
 from ..formatting import terminal_text
 from .data import Json, ReportData
-from .findings import caveats
 from .key_results import key_results
-from .verdicts import verdicts
+from .verdicts import caveats, verdicts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,26 +1,33 @@
-"""Page of a simulated run, with run.nc and the figures."""
+"""Page of a simulated run, and its folder with run.nc, tables and figures."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
 
-from ..._support.messages import Message, local_number, outcome_words, template
+from ..._support.errors import require_language
+from ..._support.messages import ENGLISH, Message, in_language, local_number, outcome_words, template
+from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
 from ...geometry.surfaces import Grid
-from ...scenario.plausibility import model_limits
+from ...scenario.plausibility import implausible_values, model_limits
 from ...simulation.run import Run
-from ...simulation.run_summary import run_gates, run_warnings
-from ...track.course.gates_table import time_warnings
+from ...simulation.run_summary import run_gates, run_warnings, summary_dict
+from ...simulation.run_tables import write_track
+from ...track.course.gates_table import gates_csv, time_warnings
 from ..figures.course import edge_angles_of_skis
 from ..figures.drawing import Picture
-from ..formatting import counted, html, prose, significant, whole
+from ..figures.figure_files import Progress, picture_files, silent, write_pictures
+from ..formatting import counted, html, json_text, prose, significant, whole
 from ..sheet import Header, Section, sheet
+from .drawings import run_drawings
+from .file import write_run_file
 from .tables import energies_table, gates_table, scenario_table, skis_table, verification_table
 
 Json = dict[str, Any]
@@ -30,11 +37,6 @@ FURTHER: Final = ("course", "balance", "boots")
 """Names of the further figures of a run with a course, a skier, or moving boots."""
 _OF_SKIER: Final = {"balance": Message("Balance of the skier"), "boots": Message("Boots")}
 REPLAY: Final = "replay.html"  # name of the file with the replay
-
-
-def replay_fact() -> Markup:
-    """Link to the replay among the facts of the page."""
-    return Markup("<dt>{}</dt><dd>{}</dd>").format(str(Message("Replay")), _replay_link())
 
 
 def _replay_link() -> Markup:
@@ -244,3 +246,52 @@ def _angle(angle: float) -> str:
 def _number(value: float | None, digits: int = 3) -> str:
     """A number with a few digits; a dash for None, NaN and infinity."""
     return significant(None if value is None else json_number(value), digits)
+
+
+SUMMARY, GATES, PAGE = "summary.json", "gates.csv", "report.html"
+_STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY, "replay.glb")
+_MOMENTS: Final = "replay-*s.glb"
+
+
+def write_run(
+    run: Run,
+    folder: str | Path,
+    *,
+    summary: Mapping[str, Any] | None = None,
+    write_more: Callable[[Path], None] | None = None,
+    language: str = ENGLISH,
+    progress: Progress = silent,
+) -> Path:
+    """Write all files of a run to a temporary folder and move them into place together.
+
+    folder: output folder, created if necessary. Figures of an earlier run are replaced or removed; other files stay.
+    summary: contents of summary.json (default: those of `summary_dict`).
+    write_more: function that writes further files of the run into the temporary folder.
+    language: language of the page and the figures (en, de).
+    progress: callback for progress messages.
+    Returns: Path of report.html.
+    Raises OutputError: a file cannot be written.
+    Raises ParameterError: the language is unknown.
+    """
+    require_language(language)
+    folder = Path(folder)
+    for sentence in prepare_folder(folder):
+        progress(sentence)
+    contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
+    with staged(folder, last=SUMMARY) as stage:
+        stage.stale += [*_STALE, *(path.name for path in folder.glob(_MOMENTS))]
+        write_file(stage.path / SUMMARY, f"{json_text(contents)}\n")
+        write_track(run, stage.path / "track.csv")
+        result = run_gates(run)
+        if result is not None:
+            write_file(stage.path / GATES, gates_csv(result))
+        if write_more is not None:
+            write_more(stage.path)
+        progress("run.nc")
+        write_run_file(run, contents["scenario"], stage.path / "run.nc", provenance=contents["provenance"])
+        has_replay = (stage.path / REPLAY).is_file()
+        with in_language(language):
+            pictures = write_pictures(run_drawings(run), stage.path / "figures", progress=progress)
+            progress(PAGE)
+            write_file(stage.path / PAGE, run_page(run, contents, pictures, has_replay=has_replay))
+    return folder / PAGE

@@ -23,8 +23,7 @@ from ...campaign.store import (
 )
 from ...campaign.store.export import photo_of
 from ...campaign.store.stored_tables import cell_of
-from ..elements import Words, add_items, button, field, folded
-from ..layout import heading
+from ..elements import Words, add_items, button, field, folded, heading
 from ..page_requests import asking_button, form
 from ..words import label, minute_words, number_text, said
 from .table_view import TableView

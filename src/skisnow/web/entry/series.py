@@ -12,8 +12,7 @@ from nicegui import ui
 from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
 from ...campaign.store import ReplayedTest
-from ..elements import button, choice, field, folded
-from ..layout import heading, sentence
+from ..elements import button, choice, field, folded, heading, sentence
 from ..page_requests import asking_button, current_request, entry_address, event_handler, form
 from ..words import label, number_text
 from .changes import changes, focus_button

@@ -10,8 +10,7 @@ from nicegui import ui
 from ..._support.messages import Message
 from ...campaign.reading.experiments import TURNING
 from ...campaign.store import Reading, ReplayedTest
-from ..elements import choice, field
-from ..layout import heading, sentence
+from ..elements import choice, field, heading, sentence
 from ..page_requests import asking_button, entry_address, form
 from ..words import label
 from .changes import UNANSWERED, ask_correction, changes

@@ -19,8 +19,7 @@ from ...campaign.store.stored_tables import FORMS
 from ...report.charts import SeriesCurve
 from ...report.formatting import significant
 from ..edit_session import EditSession, QuickResults, TestKey
-from ..elements import StatusLine, Words, add_items, choice, field, link, named
-from ..layout import error_sentence, heading
+from ..elements import StatusLine, Words, add_items, choice, error_sentence, field, heading, link, named
 from ..page_requests import asking_button, current_request, entry_address
 from ..widgets import BEHIND, ChartLine, LineChart
 from ..words import TABLES, in_words, label, minute_words, number_text, result_words, said

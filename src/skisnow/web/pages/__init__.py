@@ -11,5 +11,5 @@ from typing import Final
 PAGES: Final = ("campaigns", "skis", "carve", "design", "simulate", "study", "replay")
 """Modules of this folder, in the order of the navigation."""
 
-INNER: Final = ("import_file", "describe", "enter", "correct", "analysis", "study_table")
+INNER: Final = ("import_file", "describe", "enter", "analysis", "study_table")
 """Modules of pages without a link in the navigation."""

@@ -14,12 +14,10 @@ from starlette.responses import FileResponse, Response
 from ..._support.messages import Message
 from ..analysis_view import AnalysisView, OpenAnalysis
 from ..campaign_analysis import AnalysisCache, load_drawing, write_whole_report
-from ..elements import link
-from ..layout import page_frame, plain_page
+from ..elements import link, page_frame, plain_page
 from ..page_requests import entry_address, export, required_id
 from ..settings import Lab
-from ..subprocesses import Worker
-from ..uploads import zip_download, zip_of_campaign
+from ..uploads import Worker, zip_download, zip_of_campaign
 from ..words import language_of_request
 
 HERE: Final = "/"

@@ -19,8 +19,7 @@ from ...campaign.store import Journals, StoredCampaign
 from ...replay.page import STYLE, page_words
 from ...report.formatting import counted
 from ..edit_session import EditSession
-from ..elements import Words, button, link, named
-from ..layout import heading, page_frame, sentence
+from ..elements import Words, button, heading, link, named, page_frame, sentence
 from ..page_requests import analysis, correction_address, entry_address, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..replay_addresses import LIST as REPLAYS

@@ -8,9 +8,8 @@ from nicegui import ui
 
 from ..._support.messages import Message
 from ..carved_turn import NUMBERS, RATIOS, SLIDERS, CarvedTurn, CarveInputs, Solver
-from ..elements import choice, link
+from ..elements import choice, link, page_frame
 from ..lab_skis import NOTHING, LabSkis
-from ..layout import page_frame
 from ..settings import Lab
 from ..snow_choice import SnowChoice
 

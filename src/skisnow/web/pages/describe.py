@@ -16,8 +16,7 @@ from ...campaign.store import Journals, NewEntry, OvertakenError
 from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import description_text
 from ..edit_session import EditSession
-from ..elements import StatusLine, TypedField, choice, field
-from ..layout import heading, page_frame, sentence
+from ..elements import StatusLine, TypedField, choice, field, heading, page_frame, sentence
 from ..page_requests import asking_button, current_request, entry_address, form, go_on, required_id, row_button
 from ..settings import Lab
 from ..words import language_of, number_text, said, typed_number

@@ -13,9 +13,8 @@ from ...carving.edge_line import BOOT_REACH
 from ...design import Design
 from ...ski.ski_file import keys_text
 from ..carved_turn import NUMBERS, SLIDERS, CarvedTurn, CarveInputs, Solver, with_sources
-from ..elements import Outcome, button, choice, field, option_texts
+from ..elements import Outcome, button, choice, error_sentence, field, option_texts, page_frame
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
-from ..layout import error_sentence, page_frame
 from ..settings import Lab
 from ..snow_choice import SnowChoice
 from ..words import said, typed_number

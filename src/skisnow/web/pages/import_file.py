@@ -19,11 +19,23 @@ from ...campaign.importing.sections import Section
 from ...campaign.importing.sheets import FROM_NOTES, KINDS
 from ...campaign.problems import Problem
 from ...campaign.reading.headings import units_for
-from ..elements import Outcome, Words, add_head, add_items, button, choice, field, folded
-from ..layout import error_sentence, heading, page_frame, sentence
+from ..elements import (
+    Outcome,
+    Words,
+    add_head,
+    add_items,
+    button,
+    choice,
+    error_sentence,
+    field,
+    folded,
+    heading,
+    page_frame,
+    sentence,
+)
 from ..settings import BUILD_S, Lab
-from ..subprocesses import BOUNDS, confined
 from ..transfer import FileImports, try_import
+from ..uploads import BOUNDS, confined
 from ..words import TABLES, label, number_text, said
 
 PATH: Final = "/import/{id_}"

@@ -13,9 +13,8 @@ from ..._support.messages import Message
 from ..._support.user_files import ContentError, read_record
 from ...report.formatting import counted
 from ...report.track.summary import GPX_FILE, TURNS_FILE
-from ..elements import Outcome, Words, button, folded, link, named
+from ..elements import Outcome, Words, button, error_sentence, folded, heading, link, named, page_frame, sentence
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
-from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import address, file_input, submit_button, text_input, upload_form
 from ..replay_addresses import (
     GATES,

@@ -13,10 +13,21 @@ from starlette.datastructures import FormData
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
 from ...replay.run_file import RUN_FILE
-from ..elements import Outcome, button, choice, field, folded, link, named
+from ..elements import (
+    Outcome,
+    button,
+    choice,
+    error_sentence,
+    field,
+    folded,
+    heading,
+    link,
+    named,
+    page_frame,
+    sentence,
+)
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
-from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import add_upload, address, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
 from ..runs import Job, Runs

@@ -11,13 +11,25 @@ from ..._support.errors import SkisnowError
 from ..._support.messages import Message, current_language, translations
 from ...report.charts import SkiDrawing, ski_drawing
 from ..carved_turn import ENDS
-from ..elements import Outcome, button, choice, field, folded, link, named, option_texts
+from ..elements import (
+    Outcome,
+    button,
+    choice,
+    error_sentence,
+    field,
+    folded,
+    heading,
+    link,
+    named,
+    option_texts,
+    page_frame,
+    sentence,
+)
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
-from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import address
 from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
-from ..subprocesses import SKI_BOUNDS, confined
+from ..uploads import SKI_BOUNDS, confined
 from ..widgets import ChartLine, LineChart, add_ski_table
 
 PATH: Final = "/skis"

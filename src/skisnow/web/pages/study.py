@@ -13,9 +13,20 @@ from ...parameters import InputValue
 from ...report.campaign.page import RESULTS
 from ..carved_turn import OF_SNOW as CARVE_SNOW
 from ..carved_turn import SLIDERS
-from ..elements import Outcome, Words, button, choice, link, named, option_texts
+from ..elements import (
+    Outcome,
+    Words,
+    button,
+    choice,
+    error_sentence,
+    heading,
+    link,
+    named,
+    option_texts,
+    page_frame,
+    sentence,
+)
 from ..lab_skis import FILE, TABLE, LabSkis
-from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import redrawn_by
 from ..runs import Job
 from ..scenario_fields import ScenarioField, field_label, in_labels

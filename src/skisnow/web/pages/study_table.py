@@ -14,8 +14,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, outcome_words
 from ...report.formatting import significant
 from ...studies import Study, StudyTable
-from ..elements import Words, add_head, choice, link, named
-from ..layout import error_sentence, heading, page_frame, plain_page, sentence
+from ..elements import Words, add_head, choice, error_sentence, heading, link, named, page_frame, plain_page, sentence
 from ..runs import Job
 from ..scenario_fields import field_label, typed_form
 from ..settings import Lab

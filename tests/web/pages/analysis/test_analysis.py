@@ -35,7 +35,7 @@ from skisnow.web.campaign_analysis import (
     choosable_flags,
 )
 from skisnow.web.pages import analysis as page_module
-from skisnow.web.subprocesses import Worker
+from skisnow.web.uploads import Worker
 from tests.coded import raises
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed, sheared

@@ -17,10 +17,10 @@ from starlette.requests import Request
 from starlette.types import Message
 
 from skisnow._support.errors import FieldDataError, OutputError, ParameterError, StoreError
-from skisnow.web import layout, server, subprocesses
+from skisnow.web import elements, server, uploads
 from skisnow.web.campaign_analysis import AnalysisCache
+from skisnow.web.elements import _error_answer, _notify, error_sentence, log_error, log_to, plain_page
 from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
-from skisnow.web.layout import _error_answer, _notify, error_sentence, log_error, log_to, plain_page
 from skisnow.web.server import (
     ENCRYPTED,
     IN_CLEAR,
@@ -31,7 +31,7 @@ from skisnow.web.server import (
     require_allowed,
     serve,
 )
-from skisnow.web.subprocesses import Bounds
+from skisnow.web.uploads import Bounds
 from tests.coded import raises
 
 from ..desk import Desk
@@ -197,7 +197,7 @@ def test_names_of_this_machine_are_known_where_others_may_come(monkeypatch: pyte
 def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A separate log file."""
     made = logging.getLogger("skisnow.test-of-what-is-guarded")
-    monkeypatch.setattr(layout, "LOG", made)
+    monkeypatch.setattr(elements, "LOG", made)
     log_to(tmp_path / "new" / "lab.log")
     yield tmp_path / "new" / "lab.log"
     for handler in made.handlers[:]:
@@ -206,9 +206,9 @@ def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def test_the_log_keeps_its_last_two_files(log: Path) -> None:
-    (handler,) = (each for each in layout.LOG.handlers if isinstance(each, RotatingFileHandler))
+    (handler,) = (each for each in elements.LOG.handlers if isinstance(each, RotatingFileHandler))
     assert (handler.maxBytes, handler.backupCount, handler.encoding) == (2_000_000, 1, "utf-8")
-    assert (layout.LOG.level, layout.LOG.propagate) == (logging.INFO, False)
+    assert (elements.LOG.level, elements.LOG.propagate) == (logging.INFO, False)
     reference = log_error(ValueError("ü"))
     assert len(reference) == 8
     line, *trace = log.read_text(encoding="utf-8").splitlines()
@@ -264,11 +264,11 @@ def test_an_answer_that_failed_says_what_it_may(desk: Desk, log: Path) -> None:
 
 def test_an_unforeseen_error_of_another_process_has_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[Any] = []
-    monkeypatch.setattr(subprocesses, "end_with_server", lambda: None)
-    monkeypatch.setattr(subprocesses, "_set_limits", lambda _: None)
+    monkeypatch.setattr(uploads, "end_with_server", lambda: None)
+    monkeypatch.setattr(uploads, "_set_limits", lambda _: None)
     for letters in (1, 9000):
         work = raising(ValueError("x" * letters))
-        subprocesses._run_confined(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
+        uploads._run_confined(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
     assert [(type(error), error.code) for error, _ in told] == [(ParameterError, "cannot_read")] * 2
     assert told[0][1].startswith("Traceback") and told[0][1].endswith("ValueError: x\n")
     assert len(told[1][1]) == 4000 and told[1][1].endswith("xx\n")
@@ -282,13 +282,13 @@ def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None
         return SimpleNamespace(start=target)
 
     parent = SimpleNamespace(sentinel=7)
-    monkeypatch.setattr(subprocesses, "threading", SimpleNamespace(Thread=thread))
-    monkeypatch.setattr(subprocesses, "multiprocessing", SimpleNamespace(parent_process=lambda: parent))
-    monkeypatch.setattr(subprocesses, "os", SimpleNamespace(_exit=lambda code: done.append(f"ends with {code}")))
+    monkeypatch.setattr(uploads, "threading", SimpleNamespace(Thread=thread))
+    monkeypatch.setattr(uploads, "multiprocessing", SimpleNamespace(parent_process=lambda: parent))
+    monkeypatch.setattr(uploads, "os", SimpleNamespace(_exit=lambda code: done.append(f"ends with {code}")))
     signals = SimpleNamespace(signal=lambda *what: done.append(what), SIGINT="ctrl-c", SIG_IGN="left out")
-    monkeypatch.setattr(subprocesses, "signal", signals)
-    monkeypatch.setattr(subprocesses, "wait", done.append)
-    subprocesses.end_with_server()
+    monkeypatch.setattr(uploads, "signal", signals)
+    monkeypatch.setattr(uploads, "wait", done.append)
+    uploads.end_with_server()
     assert done == [("ctrl-c", "left out"), True, [7], "ends with 1"]
 
 

@@ -20,7 +20,7 @@ from skisnow.web import lab_skis as measured_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, read_ski_files, ski_of_texts, ski_of_uploads, texts_of_ski
 from skisnow.web.settings import Limits
 from skisnow.web.ski_editor import FACTORS, SkiEditInput, edit_ski_texts
-from skisnow.web.subprocesses import SKI_BOUNDS
+from skisnow.web.uploads import SKI_BOUNDS
 from tests.coded import Coded, coded, raises
 
 from ..desk import Desk, Sheet

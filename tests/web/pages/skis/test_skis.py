@@ -13,7 +13,7 @@ from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
 from skisnow.web.page_requests import address
-from skisnow.web.subprocesses import SKI_BOUNDS
+from skisnow.web.uploads import SKI_BOUNDS
 
 from ..desk import Desk, Sheet
 from .shared import (
