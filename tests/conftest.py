@@ -1,5 +1,6 @@
 """What tests of several packages need."""
 
+import functools
 import gc
 import os
 import signal
@@ -7,7 +8,7 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 import pytest
@@ -20,8 +21,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from build_backend.messages import compile_changed
 
 from skisnow._support.errors import SkisnowError
-from skisnow.report.figures import drawing as figure_drawing
-from skisnow.report.figures.drawing import Drawing, Picture
+
+if TYPE_CHECKING:
+    from skisnow.report.figures.drawing import Drawing, Form
 
 # what is collected stays until the end: looking for garbage among it takes four tenths of the collection
 gc.disable()
@@ -63,7 +65,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Collect garbage only in objects made after this, and less often: it took 3 to 8 % of the time."""
+    """Keep what tests share. Collect garbage only in objects made after this, and less often: it took 3 to 8 %."""
+    # kept for all tests of a process: a command builds its parser, and a page compiles its templates, in some 10 ms
+    from skisnow import cli
+    from skisnow.report import sheet
+
+    patch.object(cli, "build_parser", functools.cache(cli.build_parser)).start()
+    patch.object(sheet, "_page_environment", functools.cache(sheet._page_environment)).start()
     gc.freeze()
     gc.set_threshold(50_000, 10, 10)
     gc.enable()
@@ -93,9 +101,11 @@ def undrawn() -> Iterator[None]:
 @contextmanager
 def without_figures() -> Iterator[None]:
     """An empty picture, each another, in place of every figure: a figure takes a second, and these tests read words."""
+    from skisnow.report.figures.drawing import Picture
+
     number = count()
 
-    def empty(drawing: Drawing) -> Picture:
+    def empty(drawing: "Drawing") -> Picture:
         svg = f'<svg xmlns="http://www.w3.org/2000/svg"><!-- {next(number)} --></svg>'
         each = svg.encode()
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
@@ -112,11 +122,13 @@ def without_png() -> Iterator[None]:
 
 
 @contextmanager
-def only_drawn(*forms: figure_drawing.Form) -> Iterator[None]:
+def only_drawn(*forms: "Form") -> Iterator[None]:
     """Pictures in these forms; the others are empty files."""
+    from skisnow.report.figures import drawing as figure_drawing
+
     drawn_as = figure_drawing._render_as
 
-    def drawn(form: figure_drawing.Form, drawing: Drawing) -> bytes:
+    def drawn(form: "Form", drawing: "Drawing") -> bytes:
         return drawn_as(form, drawing) if form in forms else b""
 
     with patch.object(figure_drawing, "_render_as", drawn):

@@ -1,6 +1,7 @@
 """JSON that a command prints."""
 
 import json
+from functools import lru_cache
 from typing import Any
 
 import jsonschema
@@ -13,5 +14,11 @@ def json_answer(words: list[str], schema: Any, printed: pytest.CaptureFixture[st
     """The JSON that a command prints with --json, which meets a schema."""
     assert main([*words, "--json"]) == status
     found = json.loads(printed.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
-    jsonschema.validate(found, schema)
+    _validator(json.dumps(schema)).validate(found)
     return found
+
+
+@lru_cache
+def _validator(schema: str) -> Any:
+    """It does not check the schema each time, as `jsonschema.validate` does; test_export.py checks all schemas."""
+    return jsonschema.Draft202012Validator(json.loads(schema))

@@ -1,16 +1,18 @@
 """The command line as a user meets it."""
 
+import inspect
 import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
 import jsonschema
 import pytest
 
-from skisnow.cli import main
+from skisnow.cli import build_parser, main
 from skisnow.cli.shell import json_schema
 
 from ..campaign.conftest import FILES
@@ -216,13 +218,19 @@ def test_a_load_that_is_no_quantity_is_rejected(capsys: pytest.CaptureFixture[st
     assert told in capsys.readouterr().err
 
 
+def replace_check(monkeypatch: pytest.MonkeyPatch, run: Callable[[object], int]) -> None:
+    """The command in a parser of its own."""
+    monkeypatch.setattr("skisnow.cli.campaign.check", run)
+    monkeypatch.setattr("skisnow.cli.build_parser", inspect.unwrap(build_parser))
+
+
 class TestLastResort:
     @pytest.fixture(autouse=True)
     def broken(self, monkeypatch: pytest.MonkeyPatch) -> None:
         def run(_: object) -> int:
             raise ZeroDivisionError("an unforeseen error\nsecond line")
 
-        monkeypatch.setattr("skisnow.cli.campaign.check", run)
+        replace_check(monkeypatch, run)
 
     def test_one_sentence_a_reference_and_the_trace_in_a_file(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -254,7 +262,7 @@ def test_too_little_memory_is_a_sentence(monkeypatch: pytest.MonkeyPatch, capsys
     def run(_: object) -> int:
         raise MemoryError
 
-    monkeypatch.setattr("skisnow.cli.campaign.check", run)
+    replace_check(monkeypatch, run)
     assert main(["check", "x"]) == 1
     assert "memory" in capsys.readouterr().err
 

@@ -151,7 +151,7 @@ class Sheet:
         while not (found := self.desk.do(holds)):
             assert not self.desk.failures
             assert time.monotonic() < end, self.outline()
-            time.sleep(0.005)
+            time.sleep(0.01)
         return found
 
     def shows(self, text: str) -> str:
@@ -229,7 +229,7 @@ class Desk:
         self.do(_close_all)
         end = time.monotonic() + PATIENCE_S
         while self.do(_is_busy) and time.monotonic() < end:
-            time.sleep(0.005)
+            time.sleep(0.01)
         self.failures.clear()
         self.errors.clear()
         with writing(self.lab.store.engine) as connection:
@@ -244,7 +244,7 @@ class Desk:
         end = time.monotonic() + PATIENCE_S
         while not self.failures:
             assert time.monotonic() < end
-            time.sleep(0.005)
+            time.sleep(0.01)
         return self.failures.pop()
 
     def do(self, act: Callable[[], Answer], client: Client | None = None) -> Answer:
