@@ -195,10 +195,15 @@ from importlib.metadata import version
 import skisnow
 heavy = {"numpy", "scipy", "matplotlib", "pandas", "xarray", "skisnow.simulation", "skisnow.scenario"}
 assert not heavy & set(sys.modules), heavy & set(sys.modules)
+import skisnow.report.campaign.summary
+assert not {"matplotlib", "jinja2"} & set(sys.modules)
+import skisnow.replay
+assert not {"nicegui", "fastapi", "starlette"} & set(sys.modules)
 """
 
 
-def test_the_package_alone_imports_nothing_heavy() -> None:
+def test_modules_do_not_import_what_they_do_not_need() -> None:
+    """The summary does not wait for the drawing library; replay.html is written without the extra for the web."""
     assert subprocess.run([sys.executable, "-c", IMPORT_ALONE], check=False).returncode == 0
 
 

@@ -274,3 +274,14 @@ def test_tracks_that_have_one_moment_in_common_are_compared_there() -> None:
     assert set(met.distance.tolist()) == {3.0}
     assert set(met.arc_length.tolist()) == {5.0}
     assert time_offsets(late, early, later=-0.001) is None
+
+
+def test_an_arc_of_one_radius_has_an_uncertain_heading(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.comparison.alignment.PLACES", 512)
+    angle = np.linspace(0.0, 0.8, 100)
+    run = build_track(arc(20.0, angle), angle)
+    noise = 0.05 * np.random.default_rng(2).normal(size=(100, 2))
+    measured = build_track(run.place[:, :2] + noise, angle)
+    found = compare_tracks(run, measured, fit=("start", "heading"))
+    assert present(present(found.fitted).turned_error) > math.radians(2.0)
+    assert any("uncertain" in each for each in found.warnings)

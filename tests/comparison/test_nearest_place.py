@@ -60,7 +60,7 @@ def test_nearest_of_dense_paths_seen_aslant_from_far(dimensions: int) -> None:
     arc[:, 0], arc[:, 1] = np.cos(angle), np.sin(angle)
     path = 1000.0 * arc
     path[1000:] += 0.02 * random.standard_normal((2001, dimensions))
-    points = 500.0 * arc[random.integers(0, 3001, 60)]
+    points = 500.0 * arc[random.integers(0, 3001, 20)]
     found = Path(path).nearest(points)
     # both lose digits in differences of squares of numbers around 10³ m
     assert found.distance == pytest.approx([by_hand(point, path) for point in points], rel=1e-10)
@@ -128,7 +128,7 @@ def test_coverage_of_200_tracks(name: str) -> None:
     assert 0.90 <= np.mean(covers) <= 0.99, row(name, tracks)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(3))
 def test_arc_of_one_radius_has_no_interval(seed: int) -> None:
     motion = fitted_track("arc", 0.0, seed).motion
     assert motion.rival is not None

@@ -115,6 +115,7 @@ def test_the_worst_of_three_snows(tmp_path: Path) -> None:
     assert rows == pytest.approx(radii.tolist(), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_most_starts_reach_an_optimum_at_a_kink() -> None:
     """The best ski for the worst of three snows is at a kink.
 
@@ -136,7 +137,7 @@ def test_most_starts_reach_an_optimum_at_a_kink() -> None:
     assert np.median([each.result for each in others]) < 1.005 * best.result
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_all_starts_reach_a_smooth_optimum(seed: int) -> None:
     """Two of these starts begin with a trial that is twelve times worse."""
     found = skisnow.design_ski(TWELVE | {"starts": 8, "seed": seed})

@@ -76,10 +76,10 @@ def test_what_the_snow_takes_is_in_its_grooves(hardness: float, within: float) -
 # What the snow stores, what skis lose to it, and what an edge gives back
 
 
-INTERVAL, SEEDS = 0.02, 6
+INTERVAL, SEEDS = 0.02, 4
 
 
-def moments(changes: dict[str, Any], count: int = 40) -> dict[str, FloatArray]:
+def moments(changes: dict[str, Any], count: int = 30) -> dict[str, FloatArray]:
     """Works, stores and losses (J) at equal intervals of time, or until the steps end; empty: it cannot stand."""
     rows: list[tuple[float, ...]] = []
     with warnings.catch_warnings():

@@ -87,7 +87,7 @@ def orders(scenario: Scenario, velocity: FloatArray) -> list[float]:
     return [math.log2(before / after) for before, after in itertools.pairwise(changes)]
 
 
-@pytest.mark.parametrize("edge_angle", [30.0, 45.0])
+@pytest.mark.parametrize("edge_angle", [pytest.param(30.0, marks=pytest.mark.slow), 45.0])
 def test_elastic_snow(edge_angle: float) -> None:
     """Bouncing, rocking and gliding without grip, which slips and so has kinks."""
     seen = orders(given(**BOUNCES, sledge__edge_angle_deg=edge_angle), ROCKING)
@@ -118,7 +118,7 @@ def stepped(**changes: float) -> Dynamics:
 
 
 @pytest.mark.parametrize("changes", [{}, SKIDS], ids=["carves", "skids"])
-@pytest.mark.parametrize("edge_angle", [30.0, 45.0])
+@pytest.mark.parametrize("edge_angle", [30.0, pytest.param(45.0, marks=pytest.mark.slow)])
 def test_mirror(changes: dict[str, float], edge_angle: float) -> None:
     """The other edges, heading and side of the slope: left and right change places, twists their sign."""
     one, other = (

@@ -17,7 +17,7 @@ from .registry import READERS
 from .texts import TABLE
 
 READY = [reader for reader in READERS if reader.is_ready]
-CASES = 300
+CASES = 200
 """Of all readers together."""
 
 

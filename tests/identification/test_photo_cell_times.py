@@ -24,7 +24,7 @@ CHANGES: dict[str, object] = {
     "start.speed_m_per_s": SPEED,
     "start.heading_deg": 0.0,
 }
-STATION = np.arange(10.0, 401.0, 15.0)
+STATION = np.arange(10.0, 219.0, 8.0)
 
 
 def mass() -> float:

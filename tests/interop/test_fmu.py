@@ -120,7 +120,7 @@ class Swaying:
         )  # fmt: skip
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("fmi", [pytest.param(2, marks=pytest.mark.slow), 3])
 def test_a_controller_outside_moves_the_boots_as_it_does_in_a_run(fmi: Version, tmp_path: Path) -> None:
     """Steps of the control's period: the observations, speeds, loads and edges are the same up to rounding."""
     changes = {"solver.method": "fast", "start.heading_deg": 5.0}

@@ -214,7 +214,7 @@ print(Axis.of(SCENARIO_KEYS["snow.crust_mm"], {"from": 1, "to": 3, "n": 3}).on_g
 def test_a_new_key_is_one_declaration(tmp_path: Path) -> None:
     """In a copy of the package one file is changed; the second would be the one that uses the value."""
     copy = tmp_path / "skisnow"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "static", "web", "field"))
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("static", "web"))
     place = copy / "scenario" / "contact.py"
     text = place.read_text(encoding="utf-8")
     assert text.count(BEFORE) == 1

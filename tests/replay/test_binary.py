@@ -2,8 +2,6 @@
 
 import re
 import struct
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -152,12 +150,6 @@ def test_three_js_is_the_version_that_is_reported_and_has_its_licence() -> None:
     licence = (STATIC / "LICENSE-three.txt").read_text(encoding="utf-8")
     assert "MIT License" in licence
     assert "three.js authors" in licence
-
-
-def test_a_file_is_written_without_the_web_framework() -> None:
-    """The command line writes replay.html where only the plain package is installed."""
-    code = "import sys, skisnow.replay; sys.exit(bool({'nicegui', 'fastapi', 'starlette'} & set(sys.modules)))"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_a_replay_without_a_groove_is_shown() -> None:

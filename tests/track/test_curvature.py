@@ -70,6 +70,7 @@ def test_standard_error_inside_is_that_of_the_textbook() -> None:
     assert motion.heading_sd[40] == pytest.approx(NOISE * np.linalg.norm(slopes) / 0.1 / speed, rel=1e-6)
 
 
+@pytest.mark.usefixtures("pathless")
 def test_straight_line_may_be_straight() -> None:
     """Its curvature is 0 within the interval at 95 % of points; 5 % over some 30 independent windows may not be."""
     straight = np.stack([10.0 * 0.1 * np.arange(300), np.zeros(300)], axis=1)
@@ -135,6 +136,7 @@ def test_points_without_a_fix_in_a_gap_count_once() -> None:
     assert found.arc_length[[44, 56, 99]] == pytest.approx([44.0, 56.0, 99.0], abs=1e-9)
 
 
+@pytest.mark.usefixtures("pathless")
 def test_at_rest_there_is_no_heading() -> None:
     motion = track_motion(track(np.zeros((20, 2)), noise=NOISE))
     assert np.isnan(motion.heading).all()

@@ -59,6 +59,7 @@ def test_a_bound_is_below_the_error_of_the_smoothing() -> None:
     assert 0.02 < found.value < 0.1 * about_cubics.place_noise
 
 
+@pytest.mark.usefixtures("pathless")
 def test_uneven_times_and_gaps_take_no_part() -> None:
     made = track(linked_turns(3.0, 0.1, 200, 0), interval=0.1, noise=0.3)
     made.time[100:] += 0.05

@@ -173,6 +173,7 @@ def sine(turns: int, *, length: float = 15.0, least_radius: float = 12.0) -> Flo
     return np.asarray(np.sin(np.pi * along / length) / least_radius)
 
 
+@pytest.mark.usefixtures("pathless")
 @pytest.mark.parametrize("seed", range(2))
 def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
     """Each turn: ∫ sin(πs/15)/12 ds = 2·15/(12π) = 45.6°; switch points at 1.5, 3, 4.5 s.
@@ -194,6 +195,7 @@ def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
         assert turn.mean_radius == pytest.approx(15.0 / 0.7958, rel=0.05)
 
 
+@pytest.mark.usefixtures("pathless")
 def test_straight_line_has_no_turn_and_wiggle_below_ten_degrees_does_not_part_a_turn() -> None:
     straight = np.stack([np.arange(100.0), np.zeros(100)], axis=1)
     for seed in range(2):
@@ -208,6 +210,7 @@ def test_straight_line_has_no_turn_and_wiggle_below_ten_degrees_does_not_part_a_
     assert [turn.start for turn in parted[1:]] == pytest.approx([2.0, 2.15], abs=0.02)
 
 
+@pytest.mark.usefixtures("pathless")
 def test_long_straight_parts_two_turns_to_one_side() -> None:
     """Between them 30 m, 3 s; each turns 20/20 rad."""
     curvature = np.concatenate([np.full(2000, 1.0 / 20.0), np.zeros(3000), np.full(2001, 1.0 / 20.0)])
@@ -218,6 +221,7 @@ def test_long_straight_parts_two_turns_to_one_side() -> None:
         assert turn.turned_angle == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.usefixtures("pathless")
 def test_turn_ends_at_a_gap() -> None:
     place = along(np.full(4001, 1.0 / 20.0), STEP)[::100]
     made = track(place, noise=0.002)
@@ -228,17 +232,20 @@ def test_turn_ends_at_a_gap() -> None:
     assert turns[1].start >= made.time[20]
 
 
+@pytest.mark.usefixtures("pathless")
 def test_part_of_a_track() -> None:
     motion = track_motion(track(along(sine(4), STEP)[::100], noise=0.005))
     assert [turn.direction for turn in find_turns(motion, first=16, last=29)] == ["right"]
 
 
+@pytest.mark.usefixtures("pathless")
 def test_wide_bend_is_straight() -> None:
     for radius, turns in ((600.0, 0), (400.0, 1)):
         bend = along(np.full(15_001, 1.0 / radius), STEP)[::200]
         assert len(find_turns(track_motion(track(bend)))) == turns
 
 
+@pytest.mark.usefixtures("pathless")
 def test_share_passed_is_that_of_half_a_sine_as_long_as_the_turn() -> None:
     """A window of 1.6 s leaves 0.81 of turns of 1.5 s; the given radius times the share is the true one, 12 m."""
     motion = track_motion(track(along(sine(4), STEP)[::10], interval=0.01), window=1.6)
@@ -274,6 +281,7 @@ def test_recorded_day_has_the_devices_distance_and_top_speed(real_day: TrackSumm
     assert sum(values["marked"].values()) >= 13  # repeated time stamps
 
 
+@pytest.mark.usefixtures("pathless")
 def test_points_by_carrier_phase_are_counted() -> None:
     one = track(circle(12.0, 9.0, duration=2.0))
     assert checked(track_summary(one))["solutions"] is None
@@ -321,6 +329,7 @@ def test_short_local_track() -> None:
     assert turn["least_radius_m"] == pytest.approx(15.0, rel=0.15)  # the largest of 40 noisy curvatures, 5 % each
 
 
+@pytest.mark.usefixtures("pathless")
 def test_wavelength_is_speed_times_period() -> None:
     summary = track_summary(track(circle(15.0, 8.0)))
     assert half_wavelength(summary) == pytest.approx(8.0 * summary.motion.smoothed.resolution.half_period, rel=2e-3)
@@ -333,6 +342,7 @@ def test_track_at_rest_has_nothing_but_nulls_and_zeros() -> None:
     assert values["smoothing"]["half_amplitude_wavelength_m"] is None
 
 
+@pytest.mark.usefixtures("pathless")
 def test_a_gap_is_reported() -> None:
     made = track(circle(15.0, 8.0))
     made.time[40:] += 20.0

@@ -183,6 +183,7 @@ def test_dense_points_pass_what_the_projection_on_a_parabola_passes(period: floa
     assert found == pytest.approx(15.0 * spherical_jn(2, z) / z**2, abs=3e-3)  # 401 points instead of an integral
 
 
+@pytest.mark.usefixtures("pathless")
 @pytest.mark.parametrize("share", [0.5, 0.9])
 def test_wave_of_the_stated_period_keeps_the_stated_share(share: float) -> None:
     """A path y = a sin(2πt/T), x = vt with a slope of at most 0.01: its curvature is y''/v² within 0.02 %."""
@@ -248,15 +249,15 @@ def test_linked_turns_at_constant_speed(period: float, rate: float, count: int) 
     "name", ["varied speed, noise 0.5 m", pytest.param("constant speed, noise 0.5 m", marks=pytest.mark.slow)]
 )
 def test_intervals_contain_the_truth(name: str) -> None:
-    """A short form of the benchmark: of 5 tracks chance leaves out at most 2 in 991 of 1000 cases."""
-    found = estimates(replace(KINDS[name], duration=8.0), range(5))
-    assert len(found) == 5
+    """A short form of the benchmark: of 3 tracks chance leaves out at most 1 in 993 of 1000 cases."""
+    found = estimates(replace(KINDS[name], duration=8.0), range(3))
+    assert len(found) == 3
     for truths, intervals in (
         ([each.track.max_speed for each in found], [each.max_speed for each in found]),
         ([each.track.length for each in found], [each.length for each in found]),
     ):
         inside = [low <= truth <= high for truth, (_, low, high) in zip(truths, intervals, strict=True)]
-        assert sum(inside) >= 3
+        assert sum(inside) >= 2
         widths = [(high - low) / truth for truth, (_, low, high) in zip(truths, intervals, strict=True)]
         assert 0.0 < float(np.median(widths)) < 0.15
 
@@ -280,11 +281,11 @@ def test_coverage_of_200_tracks(name: str) -> None:
 
 def test_more_noise_is_a_wider_interval() -> None:
     """And the same track gives the same numbers."""
-    places = [simulated_track(Kind(noise=noise, duration=4.0), 3).place for noise in (0.05, 0.5, 2.0)]
+    places = [simulated_track(Kind(noise=noise, duration=4.0), 3).place for noise in (0.05, 2.0)]
     lengths = [estimate(place).length() for place in (*places, places[0])]
     widths = [length.high - length.low for length in lengths]
-    assert widths[0] < widths[1] < widths[2]
-    assert lengths[0] == lengths[3]
+    assert widths[0] < widths[1]
+    assert lengths[0] == lengths[2]
 
 
 def test_gap_is_straight_and_a_pause_is_nothing() -> None:

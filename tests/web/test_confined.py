@@ -48,7 +48,6 @@ def test_time_has_an_end() -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="no such limit")
 def test_memory_has_an_end() -> None:
-    assert confined(BOUNDS, takes_memory) == 400_000_000
     with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=300):
         confined(Bounds(memory_bytes=300_000_000), takes_memory)
 

@@ -79,6 +79,7 @@ def fits(page: Page) -> bool:
     return bool(page.evaluate("document.documentElement.scrollWidth") <= 390)
 
 
+@pytest.mark.slow
 def test_a_ski_is_designed_on_a_telephone(page: Page, served: Served, tmp_path: Path) -> None:
     page.set_viewport_size({"width": 390, "height": 844})
     page.goto(f"{served.address}design?ski=slalom&other=carver")

@@ -101,7 +101,7 @@ class Nursery:
         return code, words[-1] if words else "nothing", duration_s
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def nursery() -> Iterator[Nursery]:
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # a process with threads should not fork
     with subprocess.Popen(

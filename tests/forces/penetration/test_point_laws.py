@@ -24,7 +24,7 @@ from skisnow.forces.penetration import (
     VolumeWithAnglePoint,
 )
 
-FEW = settings(max_examples=25)
+FEW = settings(max_examples=15)
 """For each of many laws."""
 H_V = 0.2e9
 RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0, math.inf)

@@ -41,6 +41,11 @@ def carve(seconds: float, laws: Laws | None = None) -> Run:
     return simulate(load_scenario("carved-46m", changes={"run.duration_s": seconds}), laws=laws)
 
 
+@cache
+def usual_carve() -> Run:
+    return carve(0.3)
+
+
 @dataclass(frozen=True)
 class Own(FrictionLaw):
     """The scenario's friction, written here."""
@@ -105,7 +110,7 @@ def test_the_scenario_s_laws_from_python_give_its_run() -> None:
 )
 def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     """To the end, elsewhere than the scenario's laws, and every joule is somewhere."""
-    run, usual = carve(0.3, laws), carve(0.3)
+    run, usual = carve(0.3, laws), usual_carve()
     assert run.outcome == "finished"
     assert not run.has_residual_above(0.02)
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5

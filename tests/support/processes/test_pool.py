@@ -5,7 +5,6 @@ import os
 import signal
 import time
 from concurrent.futures import Future
-from functools import partial
 from multiprocessing import Pipe
 from pathlib import Path
 from types import SimpleNamespace
@@ -164,20 +163,24 @@ def place(tmp_path: Path) -> Path:
     return tmp_path / "rows.partial"
 
 
-@pytest.mark.parametrize("workers", [1, 3])
+def with_process(point: Any) -> dict[str, Any]:
+    return dict(point) | own_process(point)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
 def test_rows_are_in_the_order_of_the_points_and_progress_counts_up_to_all(workers: int) -> None:
+    """Several points are computed in other processes if there are several workers."""
     told: list[tuple[int, int]] = []
-    rows = run_batch(POINTS, dict, workers=workers, progress=lambda done, total: told.append((done, total)))
+    rows = run_batch(POINTS, with_process, workers=workers, progress=lambda done, total: told.append((done, total)))
+    assert {row.pop("process") == os.getpid() for row in rows} == {workers == 1}
     assert rows == ROWS
     assert told[0] == (0, 25)
     assert told[-1] == (25, 25)
     assert all(a[0] < b[0] for a, b in itertools.pairwise(told))
 
 
-@pytest.mark.parametrize(("workers", "points", "own"), [(1, 4, True), (2, 1, True), (2, 4, False)])
-def test_other_processes_are_started_for_several_points_alone(workers: int, points: int, own: bool) -> None:
-    rows = run_batch(POINTS[:points], partial(own_process), workers=workers)
-    assert {row["process"] == os.getpid() for row in rows} == {own}
+def test_one_point_is_computed_in_this_process() -> None:
+    assert run_batch(POINTS[:1], own_process, workers=2) == [own_process(None)]
 
 
 def test_a_worker_leaves_an_interrupt_to_its_parent() -> None:

@@ -6,6 +6,7 @@ import os
 import re
 from csv import DictReader
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from skisnow._support.errors import SkisnowError
 from skisnow._support.messages import translated
 from skisnow.replay import replay_of_run
+from skisnow.track.path_estimate import estimate_path
 from skisnow.track.read import read_track
 from skisnow.web.lab_tracks import Placing, TrackFolders
 from tests.coded import raises
@@ -95,20 +97,19 @@ def test_an_unknown_exaggeration_becomes_the_nearest(runs: Path, client: Client,
     assert answer.content == replay_model(replay, 1.0, exaggeration=given)
 
 
-NESTED = b"<gpx>" + b"<extensions>" * 200_000
-
-
 def test_a_kept_track_is_read_in_another_process(runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Whatever it does to that one, this one answers on."""
+    """A file that cannot be read is reported under its own name; test_confined.py ends the other process."""
     app, folder, tracks = FastAPI(), RunFolders(tmp_path), TrackFolders(tmp_path)
     add_addresses(app, folder)
     (tmp_path / "older").symlink_to(runs / "older")
     name = tracks.keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,2\n1,3,4\n"), Placing("x.csv"))
-    monkeypatch.setattr("skisnow.web.lab_tracks.read_track", lambda _: pytest.fail("it is read here"))
-    beside = folder.replay("older", name).track
+    with monkeypatch.context() as patched:
+        patched.setattr("skisnow.web.lab_tracks.read_track", lambda _: pytest.fail("it is read here"))
+        beside = folder.replay("older", name).track
     assert beside is not None and beside.place[:, :2].tolist() == [[1.0, 2.0], [3.0, 4.0]]
     (tmp_path / "tracks" / name / "track.csv").rename(tmp_path / "tracks" / name / "track.gpx")
-    (tmp_path / "tracks" / name / "track.gpx").write_bytes(NESTED)
+    (tmp_path / "tracks" / name / "track.gpx").write_bytes(b"<gpx>" + b"<extensions>" * 2000)
+    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
     answer = Client(app).get("/replay/data/older", params={"track": name})
     assert answer.status_code == 404 and "x.csv" in answer.text
 
@@ -174,6 +175,14 @@ def test_a_kept_track_has_a_page_of_turns_in_both_languages(tmp_path: Path, monk
     name = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
     # each process would import the package again; another test checks that they are separate
     monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
+    estimates: list[Any] = []
+
+    def estimate_once(*given: Any) -> Any:
+        estimates[1:] = []
+        estimates.extend([] if estimates else [estimate_path(*given)])
+        return estimates[0]
+
+    monkeypatch.setattr("skisnow.track.curvature.estimate_path", estimate_once)  # of one track, eight times
     app = FastAPI()
     add_addresses(app, RunFolders(tmp_path))
     client, page = Client(app), f"/replay/turns?track={name}"
