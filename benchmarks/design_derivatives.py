@@ -28,8 +28,7 @@ from skisnow.carving.result import radius_at_boot
 from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives
 from skisnow.carving.solve import Solution, _core_ski, refined, solved
 from skisnow.design import descent
-from skisnow.design.evaluation import Evaluator
-from skisnow.design.problem import Search
+from skisnow.design.evaluation import Evaluator, Search
 from skisnow.design.search import begins_of, searched_starts
 from skisnow.design.task import Goal, design_task
 from skisnow.ski import read_ski

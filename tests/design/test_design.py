@@ -13,8 +13,7 @@ import skisnow
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.cli import main
-from skisnow.design.evaluation import Evaluator
-from skisnow.design.problem import Search
+from skisnow.design.evaluation import Evaluator, Search
 from skisnow.design.search import FrontPoint, begins_of, design_front, searched_starts, write_front
 from skisnow.design.task import design_task, designed_keys
 from skisnow.ski.ski_file import Sources, ski_of_keys

@@ -14,8 +14,8 @@ from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.formatting import significant
 from skisnow.web.campaign_analysis import CampaignSource, Choice, Numbers, analyse_files, figure
 from skisnow.web.edit_session import CorrectionSession
+from skisnow.web.scenario_fields import campaign_snow, results_and_snow_words
 from skisnow.web.settings import Lab
-from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
 from skisnow.web.transfer import files_in_memory, write_campaign
 from tests.present import present
 

@@ -174,7 +174,7 @@ def checked_scheduler(scheduler: str | None) -> str | None:
     """
     if scheduler is None or scheduler in LOCAL:
         return scheduler
-    from .._support.processes.dask_cluster import is_plain, require_scheduler
+    from .._support.processes.crews import is_plain, require_scheduler
 
     require_scheduler(scheduler)
     if is_plain(scheduler):

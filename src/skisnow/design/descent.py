@@ -13,7 +13,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import SolverError
-from .problem import PERCENT, REACHED, Search
+from .evaluation import PERCENT, REACHED, Search
 
 _TOLERANCE: Final = 5e-6  # gain of the objective
 _POLISHED_TOLERANCE: Final = 1e-7  # the same for the best start

@@ -18,8 +18,7 @@ from .._support.units import Facts, Shown
 from ..carving.outputs import OUTPUTS
 from ..ski import Ski
 from ..ski.ski_file import keys_text, ski_of_keys
-from .evaluation import carve_at
-from .problem import PERCENT, REACHED, Search, linear_constraints
+from .evaluation import PERCENT, REACHED, Search, carve_at, linear_constraints
 
 _AT_BOUND: Final = 1e-6  # of the distance of the bounds
 _SAME_RESULT: Final = 0.02  # relative, of squares, of two starts that reached the same optimum

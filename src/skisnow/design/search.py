@@ -14,8 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
 from .._support.staging import prepare_folder, staged, write_file
 from .descent import Descent
-from .evaluation import Evaluator
-from .problem import REACHED, Search
+from .evaluation import REACHED, Evaluator, Search
 from .result import Design, Start, design_of
 from .task import DesignTask, Goal, design_task, read_design
 

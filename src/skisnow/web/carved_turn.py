@@ -20,7 +20,7 @@ from ..report.formatting import significant
 from ..report.pair_verdicts import ski_verdict
 from ..ski.ski_file import Sources
 from .elements import Words, button, named
-from .snow_choice import ChosenSnow, SnowChoice
+from .scenario_fields import ChosenSnow, SnowChoice
 from .widgets import STYLES, ChartLine, LineChart, add_ski_table, save_buttons
 from .words import number_text, said
 

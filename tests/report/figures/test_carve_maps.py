@@ -18,8 +18,8 @@ from skisnow.carving.answer import answer_question, answers_dict
 from skisnow.carving.question import carve_question
 from skisnow.comparison import Comparison, compare_tracks
 from skisnow.report.campaign.data import ReportData
-from skisnow.report.campaign.model_figures import model_rmse
 from skisnow.report.campaign.page import DRAWERS
+from skisnow.report.campaign.site_figures import model_rmse
 from skisnow.report.carving_figure import arc_through, carved_skis, contact_ends
 from skisnow.report.figures.drawing import Drawing
 from skisnow.report.figures.figure_files import PNG_WIDTH, require_drawable, write_figure

@@ -18,9 +18,9 @@ from matplotlib.text import Text
 
 from skisnow._support.messages import in_language
 from skisnow.report.campaign.data import ReportData
-from skisnow.report.campaign.model_figures import model_rmse, residuals
 from skisnow.report.campaign.penetration_figures import force_depth, shown_angles
 from skisnow.report.campaign.shear_figures import machining, regression_line, stress_angle
+from skisnow.report.campaign.site_figures import model_rmse, residuals
 from skisnow.report.figures.drawing import (
     FORMS,
     Drawing,

@@ -11,10 +11,9 @@ from typing import Any
 import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
-from skisnow._support.processes import crews, dask_cluster
+from skisnow._support.processes import crews
 from skisnow._support.processes.batch import Pool, require_executor, run_batch
-from skisnow._support.processes.crews import LOST, Identity
-from skisnow._support.processes.dask_cluster import DaskCrew, crew_of_scheduler, is_plain
+from skisnow._support.processes.crews import LOST, DaskCrew, Identity, crew_of_scheduler, is_plain
 from skisnow._support.processes.kept_rows import KeptRows, json_text
 from skisnow.identification import identify
 from tests.coded import Coded, coded, raises
@@ -188,7 +187,7 @@ def test_dask_that_is_not_installed_is_reported_before_the_work(monkeypatch: pyt
 @pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
 def test_what_is_on_this_computer_needs_no_scheduler(executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     searched: list[object] = []
-    monkeypatch.setattr(dask_cluster, "require_scheduler", searched.append)
+    monkeypatch.setattr("skisnow._support.processes.batch.require_scheduler", searched.append)
     require_executor(executor)
     assert searched == []
 
@@ -222,7 +221,7 @@ class Clock:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 100.0
-        monkeypatch.setattr(dask_cluster, "time", SimpleNamespace(monotonic=lambda: self.now))
+        monkeypatch.setattr(crews, "time", SimpleNamespace(monotonic=lambda: self.now))
 
 
 @pytest.fixture
@@ -313,8 +312,8 @@ def test_the_client_is_closed_at_the_end() -> None:
 
 
 def test_who_does_not_answer_is_reported_with_what_to_start() -> None:
-    assert "tcp://h:1 (refused)" in dask_cluster._no_answer_message("tcp://h:1", OSError("refused"))
-    assert "uses certificates" in dask_cluster._no_answer_message("tls://h:1", OSError("refused"))
+    assert "tcp://h:1 (refused)" in crews._no_answer_message("tcp://h:1", OSError("refused"))
+    assert "uses certificates" in crews._no_answer_message("tls://h:1", OSError("refused"))
     assert [is_plain(f"{kind}://h:1") for kind in ("tcp", "tls", "wss", "ws")] == [True, False, False, True]
 
 
@@ -324,6 +323,6 @@ def test_a_scheduler_that_dask_does_not_reach_is_reported(monkeypatch: pytest.Mo
         def Client(address: str, *, timeout: float, **_: Any) -> None:
             raise OSError(f"{address} refused for {timeout:g} s")
 
-    monkeypatch.setattr(dask_cluster, "_distributed", lambda: Distributed)
+    monkeypatch.setattr(crews, "_distributed", lambda: Distributed)
     with raises(SkisnowError, "no_scheduler", address="tcp://h:1"):
         crew_of_scheduler("tcp://h:1", dict)

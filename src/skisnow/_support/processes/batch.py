@@ -11,7 +11,17 @@ from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import Crew, Done, ExecutorCrew, Numbered, PointFunction, ProcessCrew
+from .crews import (
+    Crew,
+    DaskCrew,
+    Done,
+    ExecutorCrew,
+    Numbered,
+    PointFunction,
+    ProcessCrew,
+    crew_of_scheduler,
+    require_scheduler,
+)
 from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -220,8 +230,6 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
         threads = ThreadPoolExecutor(workers)  # the compiled core lets other threads run while it computes
         end = partial(threads.shutdown, wait=True, cancel_futures=True)
         return ExecutorCrew(function, threads, lambda: workers, end, here=True)
-    from .dask_cluster import DaskCrew, crew_of_scheduler
-
     if isinstance(executor, str):
         return crew_of_scheduler(executor, function)
     if hasattr(executor, "get_executor"):
@@ -236,8 +244,6 @@ def require_executor(executor: ExecutorLike | None) -> None:
     """Reject an unusable executor before the work begins."""
     if executor is None or executor in LOCAL or not isinstance(executor, str):
         return
-    from .dask_cluster import require_scheduler
-
     require_scheduler(executor)
 
 

@@ -27,10 +27,9 @@ from ..table import Table, table_csv, table_html
 from ..table_latex import table_latex
 from .data import ReportData
 from .key_results import headline, key_results
-from .model_figures import model_rmse, residuals
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
-from .site_figures import sites, snow_profiles
+from .site_figures import model_rmse, residuals, sites, snow_profiles
 from .tables import campaign_tables
 from .verdicts import (
     caveats,

@@ -10,8 +10,8 @@ from ..._support.messages import Message
 from ..carved_turn import NUMBERS, RATIOS, SLIDERS, CarvedTurn, CarveInputs, Solver
 from ..elements import choice, link, page_frame
 from ..lab_skis import NOTHING, LabSkis
+from ..scenario_fields import SnowChoice
 from ..settings import Lab
-from ..snow_choice import SnowChoice
 
 PATH: Final = "/carve"
 TITLE: Final = Message("Carve")

@@ -15,8 +15,8 @@ from ...ski.ski_file import keys_text
 from ..carved_turn import NUMBERS, SLIDERS, CarvedTurn, CarveInputs, Solver, with_sources
 from ..elements import Outcome, button, choice, error_sentence, field, option_texts, page_frame
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
+from ..scenario_fields import SnowChoice
 from ..settings import Lab
-from ..snow_choice import SnowChoice
 from ..words import said, typed_number
 
 PATH: Final = "/design"

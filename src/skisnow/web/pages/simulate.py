@@ -31,9 +31,17 @@ from ..lab_tracks import LabCourses
 from ..page_requests import add_upload, address, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
 from ..runs import Job, Runs
-from ..scenario_fields import ScenarioField, field_label, in_labels
+from ..scenario_fields import (
+    ChosenSnow,
+    ScenarioField,
+    SnowChoice,
+    field_label,
+    in_labels,
+    require_scenario,
+    results_and_snow_words,
+    snow_words,
+)
 from ..settings import Lab
-from ..snow_choice import ChosenSnow, SnowChoice, require_scenario, results_and_snow_words, snow_words
 from ..widgets import Act, JobCard, JobList
 from ..words import language_of, number_text
 

@@ -29,9 +29,8 @@ from ..elements import (
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..page_requests import redrawn_by
 from ..runs import Job
-from ..scenario_fields import ScenarioField, field_label, in_labels
+from ..scenario_fields import ScenarioField, SnowChoice, field_label, in_labels
 from ..settings import Lab
-from ..snow_choice import SnowChoice
 from ..studies import Studies
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..widgets import Act, JobCard, JobList

@@ -14,13 +14,13 @@ from nicegui import ui
 from skisnow._support.errors import ParameterError
 from skisnow.snow import snow_from_results
 from skisnow.track.course import course_names
-from skisnow.web import snow_choice
+from skisnow.web import scenario_fields
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.lab_tracks import LabCourses, gates_of
 from skisnow.web.pages.simulate import _Card
 from skisnow.web.replay_addresses import show_address
 from skisnow.web.runs import Job, Runs
-from skisnow.web.snow_choice import campaign_snow
+from skisnow.web.scenario_fields import campaign_snow
 from tests.coded import raises
 
 from ...campaign_texts import SHEARED
@@ -105,7 +105,7 @@ def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, m
         analysed.append(campaign_snow(*what))
         return analysed[0]
 
-    monkeypatch.setattr(snow_choice, "campaign_snow", late)
+    monkeypatch.setattr(scenario_fields, "campaign_snow", late)
     page = desk.open("/simulate")
     page.fill("Snow", f"kept-{id_}")
     page.shows("[snow] The campaign is being analysed …")
