@@ -187,7 +187,7 @@ class CarveControl:
 
     def _limit(self, speed: float) -> float:
         """Acceleration (m/s²) of a carve with the largest edge angle, limited by that at the largest lean."""
-        return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
+        return min(speed**2 / (self.edges.radius * math.cos(self.edges.steepest(speed))), self._steepest)
 
     def _foreseen(self, now: float, seen: Seen, omega: float) -> tuple[float, float]:
         """Target of the capture point, and the place of the centre of mass in balance now (m)."""
@@ -244,8 +244,7 @@ class CarveControl:
         self._held = (held + slope) / (ahead + slope) if held != ahead else 1.0
         self._acceleration += (held - self._acceleration) * dt / (lag + dt)
         grip = (ahead + slope) / gravity
-        slip = abs(seen.slip)
-        self._slip = slip if self.edges.slips(grip, self._weight) else min(self._slip, slip)
+        self._slip = min(abs(seen.slip), math.inf if self.edges.slips(grip, self._weight) else self._slip)
         return self.edges.angle(ahead, grip, max(speed, SLOWEST), self._weight)
 
     def _lag(self, speed: float) -> float:
