@@ -16,7 +16,7 @@ from scipy.linalg import lapack
 from .._support.arrays import FloatArray, IntArray
 from .._support.units import CONFIDENCE
 from .path_model import STATES, PathFit, PathModel, TimeScales
-from .posterior import WeightedParameters, climb_samples, likely_parameters
+from .posterior import WeightedParameters, likely_parameters
 from .smoothing import SHORTEST_WINDOW, SmoothedTrack
 from .track import Track
 
@@ -40,6 +40,12 @@ the maximum of a noisy series is too high. With a longer one the path cannot fol
 """
 SPEED_TIMES: Final = (0.3, 2.0)
 """Minimum and maximum of that time (s) (modelling assumption)."""
+LEAST_HEIGHTS: Final = 0.1
+"""Share of points with a height from which heights count (modelling assumption)."""
+HEIGHT_ERROR: Final = 0.3
+"""Noise (m/s) of the vertical speed that is accepted (modelling assumption)."""
+LONGEST_WINDOW: Final = 15.0
+"""Maximum time (s) over which a vertical speed is averaged (modelling assumption)."""
 _MOST_NUMBERS: Final = 5e6
 """Numbers in the samples of a track."""
 _SAMPLES: Final = (60, 600)
@@ -67,14 +73,14 @@ class PathEstimate:
     time: (n,) s, times of the nodes.
     step: (n - 1,) s, between nodes; 0 between parts of the track.
     speed: (s, n) m/s, horizontal speed, a row for each sample.
-    climb: (s, n) m/s or None, vertical speed; None without heights.
+    climb: (n,) m/s or None, vertical speed; None without heights.
     across: (n - 1,) m, straight path between parts of the track.
     """
 
     time: FloatArray
     step: FloatArray
     speed: FloatSamples
-    climb: FloatSamples | None
+    climb: FloatArray | None
     across: FloatArray
 
     def speed_at(self, time: FloatArray) -> FloatArray:
@@ -110,7 +116,7 @@ class PathEstimate:
         """Lengths (s, m - 1) of the steps between nodes."""
         speed = self.speed[:, inside].astype(float)
         if with_heights and self.climb is not None:
-            speed = np.copysign(np.hypot(speed, self.climb[:, inside]), speed)
+            speed = np.copysign(np.hypot(speed, self.climb[inside]), speed)
         first, last, _ = inside.indices(len(self.time))
         steps = slice(first, max(last - 1, first))
         return (speed[:, 1:] + speed[:, :-1]) / 2.0 * self.step[steps] + self.across[steps]
@@ -145,7 +151,7 @@ def estimate_path(
     samples_of_pieces = [_piece_samples(at, where, scales, drawn, rng) for at, where in pieces]
     if any(piece is None for piece in samples_of_pieces):
         return None
-    return _join(time, place, part, segment, [piece for piece in samples_of_pieces if piece is not None], rng)
+    return _join(time, place, part, segment, [piece for piece in samples_of_pieces if piece is not None])
 
 
 def _average_close_points(time: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -240,7 +246,6 @@ def _join(
     part: IntArray,
     segment: IntArray,
     pieces: list[tuple[FloatArray, FloatSamples]],
-    rng: np.random.Generator,
 ) -> PathEstimate:
     """The parts one after the other, with the straight lines over gaps between them."""
     nodes = np.concatenate([at for at, _ in pieces])
@@ -255,7 +260,26 @@ def _join(
         before = min(max(int(np.searchsorted(nodes, time[gap] + 1e-9)) - 1, 0), len(across) - 1)
         across[before] += lengths[gap]
     speed = np.concatenate([samples for _, samples in pieces], axis=1)
-    return PathEstimate(nodes, step, speed, climb_samples(time, place[:, 2], part, nodes, len(speed), rng), across)
+    return PathEstimate(nodes, step, speed, _vertical_speed(time, place[:, 2], part, nodes), across)
+
+
+def _vertical_speed(time: FloatArray, height: FloatArray, part: IntArray, nodes: FloatArray) -> FloatArray | None:
+    """Mean vertical speed (m/s) about each node; None if few points have a height.
+
+    The mean is taken over two intervals, or over a longer time in which the height's noise adds 0.3 m/s.
+    """
+    known = np.isfinite(height)
+    if np.count_nonzero(known) < max(2.0, LEAST_HEIGHTS * len(time)):
+        return None
+    noise = math.sqrt(float(np.mean(np.append(np.diff(height[known], 3), 0.0) ** 2)) / 20.0)
+    window = max(2.0 * float(np.median(np.diff(time[known]))), min(noise / HEIGHT_ERROR, LONGEST_WINDOW))
+    speed = np.zeros(len(nodes))
+    for number in np.unique(part[known]):
+        at, heights = time[known & (part == number)], height[known & (part == number)]
+        inside = (nodes >= at[0]) & (nodes <= at[-1]) & (at[-1] > at[0])
+        before, after = (np.clip(nodes[inside] + change, at[0], at[-1]) for change in (-window / 2.0, window / 2.0))
+        speed[inside] = (np.interp(after, at, heights) - np.interp(before, at, heights)) / (after - before)
+    return speed
 
 
 def _interval(values: npt.NDArray[np.floating]) -> Interval:
