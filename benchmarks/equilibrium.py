@@ -86,7 +86,7 @@ def _in_threads(points: list[Point], answers: Answers) -> None:
 def _against_exudyn() -> Iterator[Measurement]:
     """A flat slalom ski under a point load on snow that does not pull; 160 elements and ready models on both sides."""
     try:
-        from tests.peers.exudyn_ski import on_snow
+        from .exudyn_contact import on_snow
     except ImportError:
         yield Measurement("flat ski at rest in snow, 160 elements", _rest_seconds(), "", "Exudyn is not installed")
         return

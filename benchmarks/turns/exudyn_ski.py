@@ -12,10 +12,10 @@ from typing import Any, Final, TypeAlias
 import exudyn
 import numpy as np
 import numpy.typing as npt
-from tests.peers.exudyn_ski import ACROSS, ALONG, ITEMS, SLOPE_ACROSS, SLOPE_ALONG, chain
 
 from skisnow.ski.ski import Ski
 
+from ..exudyn_contact import ACROSS, ALONG, ITEMS, SLOPE_ACROSS, SLOPE_ALONG, chain
 from .clamped_modes import CLAMP_LENGTH
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

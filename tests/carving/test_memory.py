@@ -7,6 +7,7 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from benchmarks.carved_turn_tables import depth
 
 from skisnow.carving.equilibrium import GrooveForm, carve
 from skisnow.carving.result import Equilibrium
@@ -15,7 +16,6 @@ from skisnow.ski.beam import CLAMP_LENGTH
 from tests.present import present
 
 from .synthetic import snow, weights
-from .tables import depth
 
 RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0)
 

@@ -6,8 +6,9 @@ import pytest
 from benchmarks.page_tables import stale_tables
 from scipy.stats import chi2
 
+from benchmarks import measured_radii as measured
+
 from ..carving.synthetic import snow
-from . import measured
 
 
 def test_on_a_floor_radii_agree_within_their_uncertainty() -> None:

@@ -12,10 +12,10 @@ from ..carving.synthetic import boot_pose, snow, weights
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install 'skisnow[peers]'")
 
+from benchmarks.exudyn_contact import cantilever_deflection, on_snow
+
 from skisnow._support.arrays import FloatArray
 from tests.present import present
-
-from .exudyn_ski import cantilever_deflection, on_snow
 
 WITHIN = 0.01
 

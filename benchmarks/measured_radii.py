@@ -1,4 +1,4 @@
-"""Measured radii beside ours: python -m tests.papers.measured writes the tables of docs/validation/measured.md."""
+"""Measured radii beside ours: python -m benchmarks.measured_radii writes the tables of docs/validation/measured.md."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from benchmarks.page_tables import write_tables
+from tests.carving.synthetic import circular_sidecut, plain_ski, snow
 from tests.present import present
 
 from skisnow import carve, read_ski
@@ -14,7 +14,7 @@ from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow import published_snow
 
-from ..carving.synthetic import circular_sidecut, plain_ski, snow
+from .page_tables import write_tables
 
 PAGE: Final = "validation/measured"
 RACE_PISTE: Final = published_snow("race-piste")

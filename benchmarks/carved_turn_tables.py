@@ -1,4 +1,4 @@
-"""Tables and figure of docs/validation/simulated-turn.md: python -m tests.carving.tables (needs Exudyn)."""
+"""Tables and figure of docs/validation/simulated-turn.md: python -m benchmarks.carved_turn_tables (needs Exudyn)."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -7,20 +7,20 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from benchmarks.page_tables import write_tables
 from openbench.entries.numpy_reference import slow_carve as reference
 from openbench.entries.numpy_reference.slow_carve import Case
+from tests.carving.synthetic import boot_pose, circular_sidecut, plain_ski, race_profile, snow
 
 from skisnow._support.arrays import FloatArray
 from skisnow.carving.equilibrium import carve, rest
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import read_ski
 
-from .synthetic import boot_pose, circular_sidecut, plain_ski, race_profile, snow
+from .page_tables import write_tables
 
 MESHES = (40, 80, 160, 320, 640)
 SKIS = ("slalom", "giant-slalom", "carver")
-FIGURES = Path(__file__).parents[2] / "docs" / "_static" / "validation"
+FIGURES = Path(__file__).parents[1] / "docs" / "_static" / "validation"
 
 
 def table(name: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
@@ -169,7 +169,7 @@ def memory() -> None:
 
 def against_exudyn() -> None:
     """Greatest deviations over the three skis, as shares of the greatest depth and of the greatest deflection."""
-    from ..peers.exudyn_ski import on_snow
+    from .exudyn_contact import on_snow
 
     rows = []
     for hardness in (0.02, 0.2, 2.0):
