@@ -82,7 +82,7 @@ def disturbed() -> Iterator[str]:
     yield "| case | f 0.7 to 1.4 | other f | failed at f |"
     yield "| --- | ---: | ---: | --- |"
     for case in SHORT:
-        ends = [(start.force, outcome(simulate(case.scenario(start))) == "finished") for start in starts(6, 91)]
+        ends = [(start.force, outcome(simulate(case.scenario(start))) == "finished") for start in starts(6, 137)]
         near = [good for force, good in ends if NEAR[0] <= force <= NEAR[1]]
         far = [good for force, good in ends if not NEAR[0] <= force <= NEAR[1]]
         failed = ", ".join(f"{force:.2f}" for force, good in sorted(ends) if not good)
