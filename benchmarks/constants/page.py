@@ -152,7 +152,6 @@ def _parts() -> Iterator[str]:
     yield "* At 1° the remaining shift came from the rates of the beams, which grooves follow within a step. With the"
     yield "  mean of their last two values x of one end is 27.800, 27.740, 27.699 and 27.653 m for parts of 20, 10, 5"
     yield "  and 2.5 mm; with a lead of a quarter of their last change (`LEAD`) 27.830, 27.760, 27.735 and 27.718 m."
-    yield "* Lines that the base does not pass where it is deepest take parts three times as long (`LONGER`)."
     yield ""
 
 

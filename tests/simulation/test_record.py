@@ -165,7 +165,7 @@ def test_outputs_between_the_times_of_a_drive_leave_no_trace() -> None:
     [
         (lambda run: run.plot(), "run.drawings.run_figure", ("track",)),
         (lambda run: run.plot("motion"), "run.drawings.run_figure", ("motion",)),
-        (lambda run: run.report(Path("out")), "run.folder.write_run", (Path("out"),)),
+        (lambda run: run.report(Path("out")), "run.page.write_run", (Path("out"),)),
         (lambda run: run.to_dataframe(), "run.file.run_dataframe", ()),
         (lambda run: run.to_xarray(), "run.file.run_dataset", ()),
     ],

@@ -116,7 +116,7 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   trial_ = state_.lines;
   std::size_t slots = 0;
   for (const GrooveLines& each : state_.lines) slots = std::max(slots, std::size_t(each.capacity()));
-  for (Column* each : {&scratch_, &is_needed_, &is_deepest_}) each->resize(slots);
+  for (Column* each : {&scratch_, &is_needed_}) each->resize(slots);
   before_.resize(runners_.size());
   for (const GrooveLines& each : state_.lines) sections_.emplace_back(each.capacity());
   if (snow_->rate.acts()) rated_.resize(runners_.size());
@@ -202,7 +202,7 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
 GrooveLines& SnowContact::history(int k, const Situation& at) {
   GrooveLines& standing = state_.lines[std::size_t(k)];
   const Pose& pose = at.poses[std::size_t(k)];
-  const bool marches = !state_.accepted.empty() && parts(k, at, 1.0) > 1;
+  const bool marches = !state_.accepted.empty() && parts(k, at) > 1;
   const bool reaches = standing.count() > 0 && standing.station(standing.end - 1, pose) > runner(k).tip &&
                        standing.station(standing.first, pose) < runner(k).tail;
   if (!marches && reaches) return standing;

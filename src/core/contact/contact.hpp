@@ -118,12 +118,12 @@ class SnowContact {
   std::vector<Sections> sections_;
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
-  std::shared_ptr<Bearing> bearing_;            // null: the core's own law
-  std::vector<RatedBase> rated_;                // one for each runner, if the snow takes time
-  double dt_ = 0.0;                             // from the last accepted pose to the pose that is looked at (s)
-  std::vector<std::int64_t> needed_, deepest_;  // lines whose history depends on the way, the foremost first
-  Column scratch_, is_needed_, is_deepest_;     // by slot; 1 for these lines
-  struct Before {                               // of one runner, what `begin` has changed
+  std::shared_ptr<Bearing> bearing_;  // null: the core's own law
+  std::vector<RatedBase> rated_;      // one for each runner, if the snow takes time
+  double dt_ = 0.0;                   // from the last accepted pose to the pose that is looked at (s)
+  std::vector<std::int64_t> needed_;  // lines whose history depends on the way, the foremost first
+  Column scratch_, is_needed_;        // by slot; 1 for these lines
+  struct Before {                     // of one runner, what `begin` has changed
     std::int64_t first, end;
     std::vector<GrooveLines::Line> lines;
     void put_back(GrooveLines& into) const;
@@ -153,7 +153,7 @@ class SnowContact {
   void stand(const Situation& at);
   void pass_time(double dt);
   void lay_anew(int k, const Pose& pose);
-  int parts(int k, const Situation& at, double longer) const;
+  int parts(int k, const Situation& at) const;
   void march(int k, GrooveLines& lines, const Situation& to);
   void find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to);
   void march_where_needed(int k, const Situation& to);

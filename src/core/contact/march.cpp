@@ -18,7 +18,6 @@ void SnowContact::Before::put_back(GrooveLines& into) const {
 namespace {
 
 constexpr double MOST_PARTS = 1e4;  // into which a way is divided
-constexpr double LONGER = 3.0;      // parts of lines that do not pass a deepest place of the base, over those that do
 
 // The polyline that a section presses into its line: the base where it is wet, and the way of its edge since it was
 // marked last. Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
@@ -184,6 +183,7 @@ void SnowContact::press(int k, std::int64_t line, GrooveLines& lines, bool only_
   const int i = s.index(line), slot = lines.slot(line);
   if (!s.touches(i)) return;
   const Touch touch{s, i, lines, slot, scratch_[std::size_t(slot)]};
+  if (only_deepest && touch.to_end == NO_VERTEX) return;
   Ground ground = lines.ground(slot);
   if (!(only_deepest ? touch.press_deepest(ground) : touch.press_base(ground))) return;
   ground.simplify(snow_->knot_area * s[DEEPEST][i] * std::max(s[WET_TO][i] - s[WET_FROM][i], 0.0), KNOTS);
@@ -198,8 +198,8 @@ void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) {
   kernels_->mark(*snow_, s.base, nullptr, is_eased ? &s.edge : nullptr, lines);
 }
 
-// Number of parts of the way from the accepted pose, `longer` times as long along the ski; 1 if it took no time.
-int SnowContact::parts(int k, const Situation& at, double longer) const {
+// Number of parts of the way from the accepted pose; 1 if it took no time.
+int SnowContact::parts(int k, const Situation& at) const {
   if (!(at.dt > 0.0)) return 1;
   const Pose& to = at.poses[std::size_t(k)];
   const Pose& from = state_.accepted[std::size_t(k)];
@@ -207,7 +207,7 @@ int SnowContact::parts(int k, const Situation& at, double longer) const {
   for (const double station : {runner(k).tip, runner(k).tail}) {
     const Vector3 way = to.position - from.position + station * (to.axis(0) - from.axis(0));
     const double along = dot(way, from.axis(0)), across = std::sqrt(std::max(dot(way, way) - along * along, 0.0));
-    most = std::max({most, std::fabs(along) / (longer * snow_->part_along), across / snow_->part_across});
+    most = std::max({most, std::fabs(along) / snow_->part_along, across / snow_->part_across});
   }
   return int(std::ceil(std::min(most, MOST_PARTS) - 1e-9));
 }
@@ -215,7 +215,7 @@ int SnowContact::parts(int k, const Situation& at, double longer) const {
 // The history of all lines along the way, up to but without its end.
 void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   if (state_.accepted.empty()) return;
-  const int parts = this->parts(k, to, 1.0);
+  const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
     interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], nullptr, to.dt, double(part) / parts,
                 on_way_);
@@ -224,20 +224,22 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   }
 }
 
-// Lines whose ground depends on the way between two poses, not on its ends alone: ahead on untouched snow, where the
-// base passes its deepest place or did so less than the way before, and where an edge slips unless all of the edge that
-// comes to the line slips to the same side.
+// Lines whose ground depends on the way between two poses, not on its ends alone: on untouched snow that the base comes
+// to, where the base passes its deepest place or did so less than the way before, and where an edge slips unless all of
+// the edge that comes to the line slips to the same side.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
   const double most = snow_->shear_displacement - THIN;  // a slip leaves the anchor as far off, but for rounding
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
-  for (Column* each : {&is_needed_, &is_deepest_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
-  Column& marked_depth = scratch_;  // by slot; 0 where the ski was not in the snow
+  for (Column* each : {&is_needed_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
+  Column& marked_depth = scratch_;             // by slot; 0 where the ski was not in the snow
+  std::int64_t foremost = lines.first - over;  // line in the snow
   int side[2] = {}, alike[2] = {};  // of each edge: whether it slips to the left, 1, or to the right, -1; lines before
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const auto slot = std::size_t(lines.slot(n));
     const bool is_marked = v[MARKED][slot] > 0.5;
     if (is_marked) marked_depth[slot] = std::max({v[LEFT_MARK_DEPTH][slot], v[RIGHT_MARK_DEPTH][slot], 0.0});
+    if (marked_depth[slot] > 0.0) foremost = n;
     for (int k = 0; k < 2; k++) {
       const double slipped = v[of_edge(LEFT_MARK, k)][slot] - v[of_edge(LEFT_ANCHOR, k)][slot];
       const bool slips = is_marked && v[of_edge(LEFT_MARK_DEPTH, k)][slot] > 0.0 && std::fabs(slipped) > most;
@@ -250,28 +252,25 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
     return n >= lines.first && n < lines.end ? marked_depth[std::size_t(lines.slot(n))] : 0.0;
   };
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
-  needed_.clear(), deepest_.clear();
-  bool ahead = true;
+  needed_.clear();
   std::int64_t deepest = lines.end + over + 1;
   for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
     const auto slot = std::size_t(lines.slot(n));
     const double rear = depth(n - over - 1), here = depth(n - over), front = depth(n - over + 1);
     if (std::min({rear, here, front}) > 0.0 && here >= std::max(rear, front)) deepest = n - over;
-    ahead = ahead && !(depth(n) > 0.0);
-    const bool is_reached = !(lines.station(n, to) > reach), passes = n >= deepest - over && n <= deepest + over;
-    if ((ahead || passes) && is_reached) is_needed_[slot] = 1.0;
+    const bool ahead = n > foremost && n <= foremost + over, passes = n >= deepest - over && n <= deepest + over;
+    if ((ahead || passes) && !(lines.station(n, to) > reach)) is_needed_[slot] = 1.0;
     if (is_needed_[slot] > 0.0) needed_.push_back(n);
-    if (passes && is_reached) is_deepest_[slot] = 1.0, deepest_.push_back(n);
   }
 }
 
-// [march] As `march`, for the lines that need it, in longer parts where the base passes no deepest place. They also
-// take the deepest place on the way to the end, and the places where edges turn back.
+// [march] As `march`, for the lines that need it. They also take the deepest place on the way to the end, and the
+// places where edges turn back.
 void SnowContact::march_where_needed(int k, const Situation& to) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (state_.accepted.empty()) return;
   const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
-  const int parts = this->parts(k, to, 1.0), long_parts = this->parts(k, to, LONGER);
+  const int parts = this->parts(k, to);
   if (parts < 2) return;
   const Vector3 way = end.position - from.position;
   find_needed(lines, std::sqrt(dot(way, way)), runner(k), end);
@@ -280,13 +279,11 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (const std::int64_t n : needed_) before.lines.emplace_back(lines, lines.slot(n));
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
-    const bool ends_long = part * long_parts / parts > (part - 1) * long_parts / parts;
-    const double* of = (ends_long ? is_needed_ : is_deepest_).data();
     interpolate(from, end, &to.motions[std::size_t(k)], to.dt, double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, lines, of, s.base);
+    kernels_->find_sections(runner(k), on_way_, lines, is_needed_.data(), s.base);
     kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
-    for (const std::int64_t n : ends_long ? needed_ : deepest_) press(k, n, lines, false);
-    kernels_->mark(*snow_, s.base, of, nullptr, lines);
+    for (const std::int64_t n : needed_) press(k, n, lines, false);
+    kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
   }
   kernels_->find_sections(runner(k), end, lines, is_needed_.data(), s.base);
   kernels_->find_vertices(runner(k), s.base, lines, scratch_.data());
