@@ -98,10 +98,10 @@ def _chains(ski: Ski, side: str, damping: float) -> str:
     front = round(SEGMENTS * (tip - half) / (tip - tail - CLAMP_LENGTH))
     ends = (np.linspace(half, tip, front + 1), np.linspace(-half, tail, SEGMENTS - front + 1))
     names = (f"{side} front", f"{side} rear")
-    return "".join(_chain(ski, name, end, damping) for name, end in zip(names, ends, strict=True))
+    return "".join(_half_ski_xml(ski, name, end, damping) for name, end in zip(names, ends, strict=True))
 
 
-def _chain(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
+def _half_ski_xml(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
     """Segments one in the other, from the clamp outwards."""
     middle = (end[:-1] + end[1:]) / 2.0
     opened = ""

@@ -153,6 +153,7 @@ class Shown:
     __slots__ = ()
 
     def _repr_facts(self) -> Facts:
+        """Title and rows of the object's repr, each row a name and a text."""
         raise NotImplementedError
 
     def _notebook_facts(self) -> Facts:

@@ -135,6 +135,7 @@ def _radius_at_boot(at: RefinedCarve) -> OutputGrowth | None:
 
 
 def _radius_of_chord(at: RefinedCarve) -> OutputGrowth | None:
+    """Radius (m) of the circle through boot and contact ends, with derivatives; None without a circle."""
     ends = _contact_ends(at)
     if ends is None:
         return None

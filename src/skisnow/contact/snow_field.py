@@ -131,7 +131,7 @@ class SnowField(Shown):
         _require("snow_hardness", _minimum(self.snow_hardness), above=0.0)
         _require("failure_shear_stress", _minimum(self.failure_shear_stress), minimum=0.0)
         _require("unloading_ratio", self.unloading_ratio, minimum=1.0)
-        self._require_one_side_force()
+        self._reject_second_side_force()
         self._require_one_place()
         _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
@@ -158,7 +158,7 @@ class SnowField(Shown):
         self._require_own_law_for_rate()
         object.__setattr__(self, "compiled", self._core_snow())
 
-    def _require_one_side_force(self) -> None:
+    def _reject_second_side_force(self) -> None:
         law = self.penetration
         if law is None or not law.along_base_normal:
             return

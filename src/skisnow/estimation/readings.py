@@ -137,7 +137,7 @@ class Readings(ShownFields):
         return result
 
     def less_offset(self, offset: FloatArray) -> Readings:
-        """The same readings with an offset of the depth zero (m, one per series) taken off; depths stay ≥ 0."""
+        """Readings with an offset (m, one per series) subtracted from depths; negative depths become 0."""
         return replace(self, penetration_depth=np.maximum(self.penetration_depth - offset[self.series], 0.0))
 
     def of(self, chosen: BoolArray) -> Readings:

@@ -156,14 +156,14 @@ class PhotoCellTimes:
         return planes(angle)
 
     def _make_glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
-        def column(key: str) -> FloatArray:
+        def values_of_key(key: str) -> FloatArray:
             return np.array([float(values[key]) for values in sets])
 
-        mass = column("sledge.mass_kg") + self._skis
+        mass = values_of_key("sledge.mass_kg") + self._skis
         return Glide(
-            friction=column("friction.mu_0"),
-            friction_by_speed=column("friction.mu_1_s_per_m"),
-            drag_per_mass=0.5 * column("drag.air_density_kg_per_m3") * column("drag.drag_area_m2") / mass,
-            speed=column("start.speed_m_per_s"),
-            gravity=column("slope.gravity_m_per_s2"),
+            friction=values_of_key("friction.mu_0"),
+            friction_by_speed=values_of_key("friction.mu_1_s_per_m"),
+            drag_per_mass=0.5 * values_of_key("drag.air_density_kg_per_m3") * values_of_key("drag.drag_area_m2") / mass,
+            speed=values_of_key("start.speed_m_per_s"),
+            gravity=values_of_key("slope.gravity_m_per_s2"),
         )

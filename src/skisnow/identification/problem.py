@@ -83,7 +83,7 @@ class Problem:
         return replace(self, noise=tuple(noises))
 
     def weights(self, other: Problem) -> FloatArray:
-        """Factors (n,) that convert residuals of `other` to residuals of this problem."""
+        """Factor of each of `other`'s n residuals to this problem's: the ratio of noises, 1 for priors."""
         ratios = [
             np.full(length, theirs / ours)
             for length, theirs, ours in zip(self.lengths, other.noise, self.noise, strict=True)

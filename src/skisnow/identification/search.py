@@ -265,6 +265,7 @@ class Search:
         return float(np.linalg.norm(state.jacobian @ step)) / noise if noise > 0.0 else 0.0
 
     def _full_step(self, state: SearchState) -> FloatArray:
+        """Step with the smallest damping, inside the bounds and no longer than `longest_move`."""
         return self._step(state, self.options.damping)
 
     def _step(self, state: SearchState, damping: float) -> FloatArray:

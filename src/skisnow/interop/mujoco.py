@@ -42,8 +42,8 @@ def ski_mjcf(ski: Ski, *, segments: int = SEGMENTS, free: bool = True) -> str:
     half, (tip, tail) = CLAMP_LENGTH / 2.0, (float(ski.station[0]), float(ski.station[-1]))
     front = round(segments * (tip - half) / (length - CLAMP_LENGTH))
     chains = (
-        _chain(ski, "front", np.linspace(half, tip, front + 1)),
-        _chain(ski, "rear", np.linspace(-half, tail, segments - front + 1)),
+        _half_ski_xml(ski, "front", np.linspace(half, tip, front + 1)),
+        _half_ski_xml(ski, "rear", np.linspace(-half, tail, segments - front + 1)),
     )
     return f"""<mujoco model="{_quoted_name(ski.name)}">
  <compiler angle="radian" autolimits="true"/>
@@ -79,8 +79,8 @@ def rigid_ski_geoms(ski: Ski, *, segments: int = SEGMENTS) -> str:
     return "\n".join(_box_xml(ski, near, far) for near, far in pairwise(places.tolist()))
 
 
-def _chain(ski: Ski, name: str, end: FloatArray) -> str:
-    """Segments one in the other, from the binding outwards; each body's frame is level at its inner end."""
+def _half_ski_xml(ski: Ski, name: str, end: FloatArray) -> str:
+    """XML of nested bodies, from the binding outwards, between the stations `end` (m) of one ski half."""
     middle = (end[:-1] + end[1:]) / 2.0
     opened, before = "", (0.0, 0.0)
     for i, (near, far) in enumerate(pairwise(end.tolist())):

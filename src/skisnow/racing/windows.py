@@ -109,6 +109,7 @@ class Windows:
         part, how = first_gates(line, end), self.how
 
         def point_of(place: FloatArray) -> LinePoint:
+            """Racing line of a place (n,) of the search, each number from 0 to 1."""
             numbers = (_LOW[: self.kinds] + place.reshape(-1, self.kinds) * _WIDTH[: self.kinds]).tolist()
             return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
 

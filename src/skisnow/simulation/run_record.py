@@ -153,7 +153,7 @@ class Record:
         return np.asarray(out)
 
     def _tracks(self, place: FloatArray, attitude: FloatArray, depth: FloatArray) -> FloatArray:
-        """Loaded place across each ski at the boot, projected on the slope's surface: (n, 2, 3)."""
+        """Track of each ski (n, 2, 3): the place under the boot that bears the load, on the slope's surface."""
         scenario, tracks = self.setup.scenario, []
         at_boot = scenario.ski.at(0.0)
         for number, ski in enumerate(self.setup.dynamics.body.skis):

@@ -288,7 +288,7 @@ def hardness_at_start(scenario: Scenario) -> float:
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
-    """Load on a ski along the snow normal (N), depth of its edge (m) as if rigid, and 1/λ of its contact (m)."""
+    """Load of one ski at the start along the normal (N), edge depth if rigid, decay length 1/λ (m)."""
     ski, sledge = scenario.flexing_ski, scenario.sledge
     station = np.asarray(ski.station)
     at = ski.at(np.linspace(float(station[-1]), float(station[0]), 101))

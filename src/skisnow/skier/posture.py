@@ -77,9 +77,9 @@ class Command:
     aside
         Acceleration of the centre of mass to the left of the feet (m/s²).
     pressure
-        Place of the centre of pressure to the left of the feet's middle that legs give way to (m).
+        Target of the centre of pressure, left of the feet's middle (m), which the legs yield towards.
     load
-        That both legs bear together (N), which they give way to, as do ankles; None: both are stiff.
+        Target load on both legs together (N), which legs and ankles yield towards; None: both are stiff.
     toe
         Angle of the left and the right ski from their mean heading.
     stance

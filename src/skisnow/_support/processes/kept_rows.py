@@ -60,7 +60,7 @@ class KeptRows:
         columns: Sequence[str] | None = None,
         about: Mapping[str, str] | None = None,
     ) -> Self:
-        """Open the file of a batch, or begin it.
+        """Open the file of a batch, or begin it; ParameterError if it has another fingerprint.
 
         fingerprint: changes with anything that the rows follow from.
         about: further entries of the batch for a new file.

@@ -123,7 +123,7 @@ Place: TypeAlias = tuple[str | int, ...]
 
 
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
-    """Reject values that no reader can handle.
+    """Reject overlong or invalid texts, too large or non-finite numbers, and too deep nesting.
 
     infinite: whether a number may be infinite or NaN, as TOML allows when it is written so.
     place: keys and numbers that lead to the value.

@@ -54,7 +54,7 @@ class JournalHead:
 
 
 class Journals:
-    """The journals of a store."""
+    """Reads and writes the journals of a store: append-only lists of changes to its campaigns."""
 
     def __init__(self, store: Store) -> None:
         self._engine = store.engine

@@ -140,7 +140,7 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
     text = typed.strip()
     rule = next((rule for rule in form.numbers if rule.name == column), None)
     if rule is not None:
-        return _number_cell(rule, text, conversion or UnitConversion(column))
+        return _checked_number_text(rule, text, conversion or UnitConversion(column))
     if column == BRANCH and text.casefold() not in BRANCHES:
         raise CellError("not_allowed", column, text, BRANCH_WORD)
     if not text and column in form.names:
@@ -150,7 +150,7 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
     return text
 
 
-def _number_cell(rule: Quantity, text: str, conversion: UnitConversion) -> str:
+def _checked_number_text(rule: Quantity, text: str, conversion: UnitConversion) -> str:
     if not text and not rule.needed:
         return ""
     text = text.replace("−", "-")

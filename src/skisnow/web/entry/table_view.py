@@ -29,7 +29,7 @@ CORRECTED: Final = Message("Corrected; the first reading is kept.")
 
 
 class TableView:
-    """One table on a page: stores entries about its tests, and shows the outcome and the results.
+    """One table on a page: stores entries about its tests, shows success or error, and live results.
 
     form, below: names of the sections of the form and of the changes for screen readers.
     """

@@ -205,7 +205,7 @@ class _Form:
             changes["ski.name" if word == ski else "ski.file"] = word
             chosen.append(Message("ski: {ski}", ski=ski))
         if self._course.value != GIVEN:
-            chosen.append(self._give_course(str(self._course.value), changes))
+            chosen.append(self._add_course(str(self._course.value), changes))
         files: dict[str, tuple[str, bytes]] = {}
         if snow is not None and snow.analysis is not None:
             results, words = await self._results(snow, scenario, changes)
@@ -226,8 +226,8 @@ class _Form:
             title=" ".join(filter(None, parts)),
         )
 
-    def _give_course(self, course: str, changes: dict[str, str]) -> str:
-        """Add a course to the changes, and let a skier steer by its gates by default; returns it in words."""
+    def _add_course(self, course: str, changes: dict[str, str]) -> str:
+        """Add the course of a name to the changes; a skier steers by its gates by default. Returns a text."""
         key, word = self._courses.change(course)
         changes[key] = word
         if "skier.steers" in self._fields:

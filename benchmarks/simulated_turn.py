@@ -1,4 +1,4 @@
-"""Numbers of docs/validation/simulated-turn.md; `python -m tests.simulation.runs.tables` writes them (7 minutes)."""
+"""Numbers of docs/validation/simulated-turn.md; `python -m benchmarks.simulated_turn` writes them (7 minutes)."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -7,16 +7,16 @@ from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
-from benchmarks.page_tables import write_tables
+from tests.dynamics.test_free_flight import DURATION, tumbling_drift
+from tests.simulation.runs import test_static_start, test_steady_circle, test_symmetries
+from tests.simulation.runs.sledges import load, rigid_ski, scenario
 
 from skisnow import Run
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.simulated_run import simulate
 from skisnow.simulation.verification import refine
 
-from ...dynamics.test_free_flight import DURATION, tumbling_drift
-from . import test_static_start, test_steady_circle, test_symmetries
-from .sledges import load, rigid_ski, scenario
+from .page_tables import write_tables
 
 SNOWS: Final = (
     (0.04, 0.2), (0.04, 0.04), (0.2, 0.5), (0.2, 0.1), (1.0, 1.0), (1.0, 0.25), (1.0, 0.3), (90.0, 10.0), (90.0, 0.3),
