@@ -219,7 +219,7 @@ def test_a_load_that_is_no_quantity_is_rejected(capsys: pytest.CaptureFixture[st
 
 
 def replace_check(monkeypatch: pytest.MonkeyPatch, run: Callable[[object], int]) -> None:
-    """The command in a parser of its own."""
+    """Replace the command `check`, in a parser built for this test."""
     monkeypatch.setattr("skisnow.cli.campaign.check", run)
     monkeypatch.setattr("skisnow.cli.build_parser", inspect.unwrap(build_parser))
 

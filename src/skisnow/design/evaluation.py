@@ -179,7 +179,7 @@ def carve_at(
 
 REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached, and breach at which a limit counts as kept."""
-_NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
+_NO_SKI: Final = 1e3  # objective without a ski or an equilibrium
 PERCENT: Final = 1e4  # squares of deviations count in %
 _BROKEN: Final = 1e9  # value of a design that breaks a limit: above that of each that keeps them
 
