@@ -15,7 +15,6 @@ import numpy as np
 from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner, SnowField
 from skisnow.forces.shear import MachiningShear
-from skisnow.forces.shear.law import strength_left
 from tests.present import present
 
 from .reference_pressure import pressure
@@ -446,7 +445,7 @@ class _Section:
     def strength(self) -> tuple[float, float]:
         """Shear strength and thrust (N/m²), less what slip has taken."""
         snow = self.whole.snow
-        left = strength_left(self.line.slipped, residual_ratio=snow.residual_ratio, slip_weakening=snow.slip_weakening)
+        left = 1.0 - (1.0 - snow.residual_ratio) * np.minimum(self.line.slipped / snow.slip_weakening, 1.0)
         if snow.shear is None:
             assert isinstance(snow.failure_shear_stress, float)
             return float(left) * snow.failure_shear_stress, 0.0

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .parameter_checks import DRAG_AREA, require_above_zero, require_not_below_zero
+from .parameter_checks import ABOVE_ZERO, DRAG_AREA, NOT_BELOW_ZERO, CheckedParameters
 
 
 @dataclass(frozen=True, slots=True)
-class AirDrag:
+class AirDrag(CheckedParameters):
     """F = -½ ρ C_dA w w⃗, with w⃗ the velocity relative to the air and w its size.
 
     drag_area: C_dA (m²), ≥ 0; 0 is drag switched off.
@@ -28,14 +29,12 @@ class AirDrag:
     [-72.0, -96.0]
     """
 
-    drag_area: float
-    air_density: float
+    drag_area: Annotated[float, NOT_BELOW_ZERO]
+    air_density: Annotated[float, ABOVE_ZERO]
 
-    def __post_init__(self) -> None:
-        require_not_below_zero(self, drag_area=self.drag_area)
-        require_above_zero(self, air_density=self.air_density)
+    def _check_together(self) -> None:
         if self.drag_area > 0:
-            DRAG_AREA.warn_outside(self.drag_area, "AirDrag", stacklevel=3)
+            DRAG_AREA.warn_outside(self.drag_area, "AirDrag", stacklevel=4)
 
     def force(self, velocity: npt.ArrayLike, *, wind: npt.ArrayLike = 0.0) -> FloatArray:
         """Force (N) of the air on a body with this velocity over the ground.

@@ -1,4 +1,4 @@
-"""Ranges of the force laws: parameters that no snow can have, and the ranges in which laws were measured.
+"""Checks of the force laws: parameters that no snow can have, and the ranges in which laws were measured.
 
 H_V and S_f were measured on ski slopes by Mössner and others (2013), and by Federolf and others (2006) as that paper
 converts them. Both count: a snow that either of them met is inside.
@@ -7,14 +7,18 @@ converts them. Both count: a snow that either of them met is inside.
 from __future__ import annotations
 
 import math
-from typing import Final
+import sys
+from collections.abc import Callable
+from dataclasses import fields
+from functools import cache
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
+from .._support.messages import Message, template
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..snow import MeasuredRange
 from ..snow.published import domine_2011, federolf_2006, lieu_mote_1985, moessner_2013
@@ -22,31 +26,57 @@ from ..snow.published import domine_2011, federolf_2006, lieu_mote_1985, moessne
 RIGHT_ANGLE = math.pi / 2.0
 
 
-def require_above_zero(owner: object, **parameters: float) -> None:
-    """Refuse a parameter that is not a finite number above 0."""
-    for name, value in parameters.items():
-        if not (math.isfinite(value) and value > 0):
-            raise ParameterError("{kind}: {name} is {value!r}; it must be a finite number above 0").tag(
-                "out_of_range", kind=type(owner).__name__, name=name, value=value
-            )
+class ParameterCheck(NamedTuple):
+    """Condition on a parameter of a law, for its annotation; with the problem and code of its error."""
+
+    holds: Callable[[float], bool]
+    problem: str
+    code: str = "out_of_range"
 
 
-def require_not_below_zero(owner: object, **parameters: float) -> None:
-    """Refuse a parameter that is not a finite number of at least 0."""
-    for name, value in parameters.items():
-        if not (math.isfinite(value) and value >= 0):
-            raise ParameterError("{kind}: {name} is {value!r}; it must be a finite number, 0 or above").tag(
-                "out_of_range", kind=type(owner).__name__, name=name, value=value
-            )
+ABOVE_ZERO: Final = ParameterCheck(
+    lambda value: value > 0, template("{kind}: {name} is {value!r}; it must be a finite number above 0")
+)
+NOT_BELOW_ZERO: Final = ParameterCheck(
+    lambda value: value >= 0, template("{kind}: {name} is {value!r}; it must be a finite number, 0 or above")
+)
+FINITE: Final = ParameterCheck(
+    lambda _: True, template("{kind}: {name} is {value!r}; it must be a finite number"), "not_a_number"
+)
 
 
-def require_finite(owner: object, **parameters: float) -> None:
-    """Reject a parameter that is not a finite number."""
-    for name, value in parameters.items():
-        if not math.isfinite(value):
-            raise ParameterError("{kind}: {name} is {value!r}; it must be a finite number").tag(
-                "not_a_number", kind=type(owner).__name__, name=name, value=value
-            )
+class CheckedParameters:
+    """Base of the laws: checks each parameter against the marks of its annotation when a law is made.
+
+    ``Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]`` rejects a number that is not above 0 and warns outside the range.
+    """
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        """Reject impossible parameters, then compare the others with the measured ranges."""
+        law: Any = type(self)
+        kind, marks = law.__name__, _marks_of(law)
+        for name, mark in marks:
+            value = getattr(self, name)
+            value = min(value, default=0.0) if isinstance(value, tuple) else value
+            if isinstance(mark, ParameterCheck) and not (math.isfinite(value) and mark.holds(value)):
+                raise ParameterError(mark.problem).tag(mark.code, kind=kind, name=name, value=value)
+        self._check_together()
+        for name, mark in marks:
+            if isinstance(mark, MeasuredRange):
+                mark.warn_outside(getattr(self, name), kind, stacklevel=3)
+
+    def _check_together(self) -> None:
+        """Further checks of a law; a warning needs ``stacklevel=4`` to name the line that made the law."""
+
+
+@cache
+def _marks_of(law: Any) -> tuple[tuple[str, object], ...]:
+    """Name of a field and one mark of its annotation, for all fields that have marks."""
+    marked = [field for field in fields(law) if str(field.type).startswith("Annotated[")]
+    hints = [eval(str(field.type), dict(vars(sys.modules[law.__module__]))) for field in marked]
+    return tuple((field.name, mark) for field, hint in zip(marked, hints, strict=True) for mark in hint.__metadata__)
 
 
 def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:

@@ -44,6 +44,8 @@ class Sample:
     factor: float
     outside: tuple[Callable[[], object], ...]
     """Uses outside the measured range."""
+    fails: str = ""
+    """Check that the law fails, as the table of docs/methods/forces.md has it."""
 
 
 def steep(law: PenetrationLaw) -> Callable[[], object]:
@@ -70,9 +72,10 @@ SAMPLES = (
         BilinearLaw(0.4e9, 1e-3, 1e-4, 0.9, -0.2),
         2.0,
         (steep(BilinearLaw(0.2e9, 1e-3, 1e-4, 0.9, -0.2)),),
+        fails="zero at zero depth",
     ),
     Sample(DepthLaw(40e3), DepthLaw(100e3), 2.5, (steep(DepthLaw(40e3)),)),
-    Sample(AreaLaw(0.2e6), AreaLaw(0.8e6), 4.0, (steep(AreaLaw(0.2e6)),)),
+    Sample(AreaLaw(0.2e6), AreaLaw(0.8e6), 4.0, (steep(AreaLaw(0.2e6)),), fails="zero at zero depth"),
     Sample(
         MeanPressureLaw(0.01e9, 0.1e6),
         MeanPressureLaw(0.03e9, 0.3e6),
@@ -82,6 +85,7 @@ SAMPLES = (
             lambda: MeanPressureLaw(0.01e9, 0.4e6),
             lambda: MeanPressureLaw(0.01e9, 0.0),
         ),
+        fails="zero at zero depth",
     ),
     Sample(ElementCountLaw(2e9, 0.1), ElementCountLaw(2e9, 0.3), 3.0, (lambda: ElementCountLaw(2e9, 1e-3),)),
     Sample(ElementCountLaw(2e9, 0.1), ElementCountLaw(6e9, 0.1), 3.0, (steep(ElementCountLaw(2e9, 0.1)),)),
@@ -157,15 +161,12 @@ CHECKS: dict[str, Callable[[PenetrationLaw], None]] = {
 
 def test_every_registered_law_has_a_sample() -> None:
     assert {type(sample.law) for sample in SAMPLES} == set(LAWS)
-    for sample in SAMPLES:
-        assert sample.law.exceptions.keys() <= CHECKS.keys()
-        assert all(len(reason) > 20 for reason in sample.law.exceptions.values())
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
 @pytest.mark.parametrize("name", CHECKS)
 def test_physics(name: str, sample: Sample) -> None:
-    if name in sample.law.exceptions:
+    if name == sample.fails:
         with pytest.raises(AssertionError):
             CHECKS[name](sample.law)
     else:

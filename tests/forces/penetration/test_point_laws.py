@@ -118,16 +118,11 @@ def test_every_registered_law_has_a_sample() -> None:
 @EVERY_LAW
 @pytest.mark.parametrize("name", CHECKS)
 def test_physics(name: str, law: PointLaw) -> None:
-    if name in law.exceptions:
+    if name == "continuous in depth" and repr(law) == repr(HypoplasticPoint(H_V, math.inf)):  # rigid-plastic
         with pytest.raises(AssertionError):
             CHECKS[name](law)
     else:
         CHECKS[name](law)
-
-
-@EVERY_LAW
-def test_exceptions_name_checks(law: PointLaw) -> None:
-    assert law.exceptions.keys() <= CHECKS.keys()
 
 
 def work(law: PointLaw, start: float, end: float, deepest: float) -> float:
@@ -283,7 +278,7 @@ def test_the_mean_over_a_wedge_is_that_of_federolf() -> None:
 
 @pytest.mark.parametrize("ratio", [0.5, math.inf, math.nan])
 def test_a_mean_pressure_that_unloads_more_softly_is_rejected(ratio: float) -> None:
-    with raises(ParameterError, "not_a_number"):
+    with raises(ParameterError, "out_of_range", kind="MeanPressurePoint"):
         MeanPressurePoint(A, B, ratio)
 
 

@@ -136,13 +136,12 @@ CHECKS: dict[str, Callable[[Sample], None]] = {
 
 def test_every_registered_law_has_a_sample() -> None:
     assert {type(sample.law) for sample in SAMPLES} == set(LAWS)
-    assert all(sample.law.exceptions.keys() <= CHECKS.keys() for sample in SAMPLES)
 
 
 @EVERY_SAMPLE
 @pytest.mark.parametrize("name", CHECKS)
 def test_physics(name: str, sample: Sample) -> None:
-    if name in sample.law.exceptions:
+    if name == "finite at every edge angle" and isinstance(sample.law, MachiningShear):
         with pytest.raises(AssertionError):
             CHECKS[name](sample)
     else:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Mapping
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..parameter_checks import GLIDE_FRICTION
+from ..parameter_checks import GLIDE_FRICTION, CheckedParameters
 
 ActsOn: TypeAlias = Literal["snow-normal", "base-normal"]
 """The load along the snow's normal, or that square on the base, side force included: docs/methods/snow-options.md."""
@@ -25,7 +24,7 @@ COMPARISON_SPEED: Final = 10.0
 speed on skis)."""
 
 
-class FrictionLaw(abc.ABC):
+class FrictionLaw(CheckedParameters, abc.ABC):
     """Friction of a ski that glides along its length: μ(v) times the normal force, against the sliding.
 
     A rival law is one frozen dataclass in a separate file, entered in ``LAWS``; it gives ``_coefficient``.
@@ -34,11 +33,6 @@ class FrictionLaw(abc.ABC):
     """
 
     __slots__ = ()
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        return {}
 
     def coefficient(self, speed: npt.ArrayLike) -> FloatArray:
         """Coefficient of friction μ (≥ 0) at a sliding speed v (m/s, ≥ 0), any shape.
@@ -78,8 +72,8 @@ class FrictionLaw(abc.ABC):
         result: FloatArray = -size[..., None] * direction
         return result
 
-    def _warn_outside(self) -> None:
-        """Compare μ at the comparison speed with the measured range; called when a law is made."""
+    def _check_together(self) -> None:
+        """Compare μ at the comparison speed with the measured range."""
         mu = self._coefficient(np.asarray(COMPARISON_SPEED))
         if np.any(mu != 0):
             GLIDE_FRICTION.warn_outside(mu, f"{type(self).__name__} at {COMPARISON_SPEED:g} m/s", stacklevel=4)

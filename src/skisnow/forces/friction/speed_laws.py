@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..parameter_checks import require_above_zero, require_finite, require_not_below_zero
+from ..parameter_checks import ABOVE_ZERO, FINITE, NOT_BELOW_ZERO
 from .law import FrictionLaw
 
 
@@ -43,11 +44,7 @@ class ConstantFriction(FrictionLaw):
     [-24.0, -32.0]
     """
 
-    friction_coefficient: float
-
-    def __post_init__(self) -> None:
-        require_not_below_zero(self, friction_coefficient=self.friction_coefficient)
-        self._warn_outside()
+    friction_coefficient: Annotated[float, NOT_BELOW_ZERO]
 
     def _coefficient(self, speed: FloatArray) -> FloatArray:
         return np.full(speed.shape, self.friction_coefficient)
@@ -89,13 +86,8 @@ class LinearFriction(FrictionLaw):
     0.05
     """
 
-    friction_at_rest: float
-    friction_slope: float
-
-    def __post_init__(self) -> None:
-        require_not_below_zero(self, friction_at_rest=self.friction_at_rest)
-        require_finite(self, friction_slope=self.friction_slope)
-        self._warn_outside()
+    friction_at_rest: Annotated[float, NOT_BELOW_ZERO]
+    friction_slope: Annotated[float, FINITE]
 
     def _coefficient(self, speed: FloatArray) -> FloatArray:
         return self.friction_at_rest + self.friction_slope * speed
@@ -137,14 +129,9 @@ class QuadraticFriction(FrictionLaw):
     0.05
     """
 
-    friction_at_rest: float
-    friction_slope: float
-    friction_curvature: float
-
-    def __post_init__(self) -> None:
-        require_not_below_zero(self, friction_at_rest=self.friction_at_rest)
-        require_finite(self, friction_slope=self.friction_slope, friction_curvature=self.friction_curvature)
-        self._warn_outside()
+    friction_at_rest: Annotated[float, NOT_BELOW_ZERO]
+    friction_slope: Annotated[float, FINITE]
+    friction_curvature: Annotated[float, FINITE]
 
     def _coefficient(self, speed: FloatArray) -> FloatArray:
         return self.friction_at_rest + (self.friction_slope + self.friction_curvature * speed) * speed
@@ -193,20 +180,10 @@ class WaterFilmFriction(FrictionLaw):
     (9.0, 0.0376)
     """
 
-    lubricated_friction: float
-    dry_friction: float
-    film_speed: float
-    viscous_slope: float
-
-    def __post_init__(self) -> None:
-        require_not_below_zero(
-            self,
-            lubricated_friction=self.lubricated_friction,
-            dry_friction=self.dry_friction,
-            viscous_slope=self.viscous_slope,
-        )
-        require_above_zero(self, film_speed=self.film_speed)
-        self._warn_outside()
+    lubricated_friction: Annotated[float, NOT_BELOW_ZERO]
+    dry_friction: Annotated[float, NOT_BELOW_ZERO]
+    film_speed: Annotated[float, ABOVE_ZERO]
+    viscous_slope: Annotated[float, NOT_BELOW_ZERO]
 
     @property
     def speed_of_least_friction(self) -> float:

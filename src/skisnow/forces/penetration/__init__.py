@@ -2,9 +2,9 @@
 
 from typing import Final
 
-from .elastic_points import ElasticPoint, MeanPressurePoint, VolumeWithAnglePoint
+from .elastic_points import ElasticPoint, MeanPressurePoint
 from .geometry_laws import AreaLaw, DepthLaw, ElementCountLaw, MeanPressureLaw
-from .hypoplastic_point import HypoplasticPoint
+from .hypoplastic_point import HypoplasticPoint, VolumeWithAnglePoint
 from .law import PenetrationLaw, PointLaw
 from .layered_point import LayeredPoint, ProfilePoint
 from .volume_laws import BilinearLaw, VolumeLaw, VolumeWithAngleLaw

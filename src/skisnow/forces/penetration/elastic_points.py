@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
-from ..._support.errors import ParameterError
-from ...snow.published.moessner_2013 import ANGLE_TERM
-from ..parameter_checks import (
-    PRESSURE_OFFSET,
-    PRESSURE_SLOPE,
-    SNOW_HARDNESS,
-    require_above_zero,
-    require_not_below_zero,
-)
-from .hypoplastic_point import HypoplasticPoint
-from .law import PointLaw
+from ..parameter_checks import ABOVE_ZERO, NOT_BELOW_ZERO, PRESSURE_OFFSET, PRESSURE_SLOPE, SNOW_HARDNESS
+from .law import DeepeningPoint, PointLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +45,7 @@ class ElasticPoint(PointLaw):
     (1000000.0, 2500.0)
     """
 
-    snow_hardness: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, snow_hardness=self.snow_hardness)
-        SNOW_HARDNESS.warn_outside(self.snow_hardness, "ElasticPoint", stacklevel=3)
+    snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stress`; the deepest depth does not matter."""
@@ -79,86 +66,13 @@ class ElasticPoint(PointLaw):
         return np.zeros(np.shape(deepest))
 
 
-@dataclass(frozen=True, slots=True)
-class VolumeWithAnglePoint(PointLaw):
-    """p = (0.99 + 0.14 ϑ) times the stress of `HypoplasticPoint`, ϑ in rad.
-
-    Over a base at one edge angle this is F_n = (0.99 + 0.14 ϑ) H_V V on virgin snow, which is `VolumeWithAngleLaw`.
-
-    Attributes
-    ----------
-    snow_hardness
-        H_V (N/m³).
-    unloading_ratio
-        k_u/H_V ≥ 1.
-
-    See Also
-    --------
-    skisnow.forces.penetration.VolumeWithAngleLaw
-    skisnow.forces.penetration.HypoplasticPoint
-
-    Notes
-    -----
-    Range, source: as `VolumeWithAngleLaw`; the unloading is ours, as in `HypoplasticPoint`. Only ``stress_and_energy``
-    depends on the angle: the other methods are those of a flat base, with a factor of 0.99. The energy of grooves cut
-    at 60° is 15 % above `lost_energy`.
-
-    References
-    ----------
-    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
-    snow for simulation of skiing", J. Glaciol.
-
-    Examples
-    --------
-    0.2 N/mm³ pressed to 10 mm: 1.98 N/mm² flat, 2.199911 N/mm² at 45°.
-
-    >>> import numpy as np
-    >>> snow = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)
-    >>> round(float(snow.stress(0.010, 0.0)))
-    1980000
-    >>> round(float(snow.stress_and_energy(np.array([0.010]), np.array([0.010]), np.radians([45.0]))[0, 0]))
-    2199911
-    """
-
-    snow_hardness: float
-    unloading_ratio: float
-
-    def __post_init__(self) -> None:
-        HypoplasticPoint(self.snow_hardness, self.unloading_ratio)  # which checks both
-
-    @property
-    def _flat_law(self) -> HypoplasticPoint:
-        return HypoplasticPoint(ANGLE_TERM[0] * self.snow_hardness, self.unloading_ratio)
-
-    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`; under a flat base."""
-        return self._flat_law.stress(depth, deepest)
-
-    def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:
-        """See `PointLaw.stress_and_energy`."""
-        b0, b1 = ANGLE_TERM
-        return (1.0 + b1 / b0 * edge_angle) * self._flat_law.stress_and_energy(depth, deepest, edge_angle)
-
-    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`."""
-        return self._flat_law.residual_depth(deepest)
-
-    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`; under a flat base."""
-        return self._flat_law.stored_energy(depth, deepest)
-
-    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`; under a flat base."""
-        return self._flat_law.lost_energy(deepest)
-
-
 RAMP_DEPTH: Final = 0.5e-3
 """Depth (m) over which B comes in (modelling assumption: not measured; the law of the paper, all of it at once, is
 its limit 0)."""
 
 
 @dataclass(frozen=True, slots=True)
-class MeanPressurePoint(PointLaw):
+class MeanPressurePoint(DeepeningPoint):
     """p = 2 A ε + B min(1, ε/ε_B), of a force along the base's normal; unloading along a steeper line.
 
     * Virgin loading, ε ≥ ε_max: p = q(ε) = 2 A ε + B min(1, ε/ε_B), and ε_max becomes ε.
@@ -204,55 +118,21 @@ class MeanPressurePoint(PointLaw):
     [192000, 384000, 1030000]
     """
 
-    pressure_slope: float
-    pressure_offset: float
+    pressure_slope: Annotated[float, ABOVE_ZERO, PRESSURE_SLOPE]
+    pressure_offset: Annotated[float, NOT_BELOW_ZERO, PRESSURE_OFFSET]
     unloading_ratio: float
-    ramp_depth: float = RAMP_DEPTH
+    ramp_depth: Annotated[float, ABOVE_ZERO] = RAMP_DEPTH
     along_base_normal: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, pressure_slope=self.pressure_slope, ramp_depth=self.ramp_depth)
-        require_not_below_zero(self, pressure_offset=self.pressure_offset)
-        if not 1.0 <= self.unloading_ratio < np.inf:
-            raise ParameterError(
-                "MeanPressurePoint: unloading_ratio is {unloading_ratio!r}; it must be finite and at least 1: "
-                "unloading softer than loading would give energy away"
-            ).tag("not_a_number", unloading_ratio=self.unloading_ratio)
-        PRESSURE_SLOPE.warn_outside(self.pressure_slope, "MeanPressurePoint", stacklevel=3)
-        PRESSURE_OFFSET.warn_outside(self.pressure_offset, "MeanPressurePoint", stacklevel=3)
 
     @property
     def bends(self) -> tuple[float, ...]:
         """See `PointLaw.bends`: where the ramp ends."""
         return (self.ramp_depth,)
 
-    @property
-    def _unloading(self) -> float:
-        """k_u (N/m³)."""
-        return self.unloading_ratio * (2.0 * self.pressure_slope + self.pressure_offset / self.ramp_depth)
-
-    def _loading_stress(self, depth: FloatArray) -> FloatArray:
-        return 2.0 * self.pressure_slope * depth + self.pressure_offset * np.minimum(1.0, depth / self.ramp_depth)
-
-    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`."""
-        reached = self.deepest_after(depth, deepest)
-        released = self._unloading * (reached - np.asarray(depth, float))
-        return np.asarray(np.maximum(self._loading_stress(reached) - released, 0.0))
-
-    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`: ε_max - q(ε_max)/k_u."""
-        reached = np.asarray(deepest, float)
-        return reached - self._loading_stress(reached) / self._unloading
-
-    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
-        return self.stress(depth, deepest) ** 2 / (2.0 * self._unloading)
-
-    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: ∫q less q²/(2 k_u)."""
-        reached = np.asarray(deepest, float)
-        ramp = np.minimum(reached, self.ramp_depth)
-        by_offset = self.pressure_offset * (reached - ramp + 0.5 * ramp**2 / self.ramp_depth)
-        stored = self._loading_stress(reached) ** 2 / (2.0 * self._unloading)
-        return np.asarray(np.maximum(self.pressure_slope * reached**2 + by_offset - stored, 0.0))
+    def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        deepest = np.asarray(deepest, float)
+        ramp = np.minimum(deepest, self.ramp_depth)
+        loaded = 2.0 * self.pressure_slope * deepest + self.pressure_offset * np.minimum(1.0, deepest / self.ramp_depth)
+        by_offset = self.pressure_offset * (deepest - ramp + 0.5 * ramp**2 / self.ramp_depth)
+        unloading = self.unloading_ratio * (2.0 * self.pressure_slope + self.pressure_offset / self.ramp_depth)
+        return loaded, self.pressure_slope * deepest**2 + by_offset, np.asarray(unloading)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +12,12 @@ from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ...snow import MeasuredRange
 from ..parameter_checks import (
+    ABOVE_ZERO,
+    NOT_BELOW_ZERO,
     PRESSURE_OFFSET,
     PRESSURE_SLOPE,
     SNOW_HARDNESS,
     edge_angles,
-    require_above_zero,
-    require_not_below_zero,
 )
 from .law import PenetrationLaw
 
@@ -57,10 +56,7 @@ class DepthLaw(PenetrationLaw):
     400.0
     """
 
-    hardness_by_depth: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, hardness_by_depth=self.hardness_by_depth)
+    hardness_by_depth: Annotated[float, ABOVE_ZERO]
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
         return self.hardness_by_depth * depth
@@ -102,15 +98,7 @@ class AreaLaw(PenetrationLaw):
     400.0
     """
 
-    hardness_by_area: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, hardness_by_area=self.hardness_by_area)
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        return {"zero at zero depth": "a flat base feels H_A L W the moment it touches the snow"}
+    hardness_by_area: Annotated[float, ABOVE_ZERO]
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
         return self.hardness_by_area * tool.contact_area(depth, angle)
@@ -163,22 +151,9 @@ class MeanPressureLaw(PenetrationLaw):
     1380.0
     """
 
-    pressure_slope: float
-    pressure_offset: float
+    pressure_slope: Annotated[float, ABOVE_ZERO, PRESSURE_SLOPE]
+    pressure_offset: Annotated[float, NOT_BELOW_ZERO, PRESSURE_OFFSET]
     edge_angle_range: ClassVar[MeasuredRange | None] = None
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, pressure_slope=self.pressure_slope)
-        require_not_below_zero(self, pressure_offset=self.pressure_offset)
-        PRESSURE_SLOPE.warn_outside(self.pressure_slope, "MeanPressureLaw", stacklevel=3)
-        PRESSURE_OFFSET.warn_outside(self.pressure_offset, "MeanPressureLaw", stacklevel=3)
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        if self.pressure_offset == 0:
-            return {}
-        return {"zero at zero depth": "a flat base feels B L W the moment it touches the snow"}
 
     def base_force(self, tool: Tool, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Force N (N) normal to the base of a ski piece, ϑ < π/2: `reaction_force` over cos ϑ."""
@@ -238,12 +213,11 @@ class ElementCountLaw(PenetrationLaw):
     400.0
     """
 
-    elements_per_volume: float
-    force_per_element: float
+    elements_per_volume: Annotated[float, ABOVE_ZERO]
+    force_per_element: Annotated[float, ABOVE_ZERO]
 
-    def __post_init__(self) -> None:
-        require_above_zero(self, elements_per_volume=self.elements_per_volume, force_per_element=self.force_per_element)
-        SNOW_HARDNESS.warn_outside(self.snow_hardness, "ElementCountLaw", stacklevel=3)
+    def _check_together(self) -> None:
+        SNOW_HARDNESS.warn_outside(self.snow_hardness, "ElementCountLaw", stacklevel=4)
 
     @property
     def snow_hardness(self) -> float:

@@ -1,21 +1,70 @@
-"""Hypoplastic snow at one place: it keeps most of the groove."""
+"""Hypoplastic snow at one place: it keeps most of the groove; also with a stress that depends on the edge angle."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..parameter_checks import SNOW_HARDNESS, require_above_zero
+from ...snow.published.moessner_2013 import ANGLE_TERM
+from ..parameter_checks import ABOVE_ZERO, SNOW_HARDNESS
 from .law import PointLaw
 
 
+class _Hypoplastic(PointLaw):
+    """Loading along a multiple of H_V, unloading and reloading along the steeper k_u."""
+
+    __slots__ = ()
+    snow_hardness: float
+    unloading_ratio: float
+    _factor: ClassVar[float] = 1.0
+    """Growth of the stress of virgin snow with depth, over H_V."""
+
+    def _check_together(self) -> None:
+        if not self.unloading_ratio >= 1.0:
+            raise ParameterError(
+                "{kind}: unloading_ratio k_u/H_V is {unloading_ratio!r}; it must be at least 1 (1 is elastic, math.inf "
+                "rigid-plastic): unloading softer than loading would give energy away"
+            ).tag("out_of_range", kind=type(self).__name__, unloading_ratio=self.unloading_ratio)
+
+    @property
+    def _hardness(self) -> float:
+        return self._factor * self.snow_hardness
+
+    @property
+    def _kept(self) -> float:
+        """Share 1 - H_V/k_u of depth and work that stays in the snow."""
+        return 1.0 - 1.0 / self.unloading_ratio
+
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stress`."""
+        depth = np.asarray(depth, float)
+        reached = self.deepest_after(depth, deepest)
+        risen = reached - depth
+        # inf times 0 has no value; at the deepest depth itself nothing has been released
+        released = np.multiply(self.unloading_ratio, risen, out=np.zeros(risen.shape), where=risen != 0)
+        result: FloatArray = self._hardness * np.maximum(reached - released, 0.0)
+        return result
+
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.residual_depth`: ε_max (1 - H_V/k_u)."""
+        return np.asarray(deepest, float) * self._kept
+
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
+        return self.stress(depth, deepest) ** 2 / (2.0 * self.unloading_ratio * self._hardness)
+
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.lost_energy`: ½ H_V ε_max² (1 - H_V/k_u)."""
+        return 0.5 * self._hardness * np.asarray(deepest, float) ** 2 * self._kept
+
+
 @dataclass(frozen=True, slots=True)
-class HypoplasticPoint(PointLaw):
+class HypoplasticPoint(_Hypoplastic):
     """Loading along H_V, unloading and reloading along the steeper k_u.
 
     * Virgin loading, ε ≥ ε_max: p = H_V ε, and ε_max becomes ε.
@@ -58,48 +107,56 @@ class HypoplasticPoint(PointLaw):
     (0.009, 9000.0)
     """
 
-    snow_hardness: float
+    snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
     unloading_ratio: float
 
-    def __post_init__(self) -> None:
-        require_above_zero(self, snow_hardness=self.snow_hardness)
-        if not self.unloading_ratio >= 1.0:
-            raise ParameterError(
-                "HypoplasticPoint: unloading_ratio k_u/H_V is {unloading_ratio!r}; it must be at least 1 (1 is "
-                "elastic, math.inf rigid-plastic): unloading softer than loading would give energy away"
-            ).tag("out_of_range", unloading_ratio=self.unloading_ratio)
-        SNOW_HARDNESS.warn_outside(self.snow_hardness, "HypoplasticPoint", stacklevel=3)
 
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        if np.isfinite(self.unloading_ratio):
-            return {}
-        return {"continuous in depth": "rigid-plastic snow lets go at once when the depth shrinks"}
+@dataclass(frozen=True, slots=True)
+class VolumeWithAnglePoint(_Hypoplastic):
+    """p = (0.99 + 0.14 ϑ) times the stress of `HypoplasticPoint`, ϑ in rad.
 
-    @property
-    def _kept(self) -> float:
-        """Share 1 - H_V/k_u of depth and work that stays in the snow."""
-        return 1.0 - 1.0 / self.unloading_ratio
+    Over a base at one edge angle this is F_n = (0.99 + 0.14 ϑ) H_V V on virgin snow, which is `VolumeWithAngleLaw`.
 
-    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`."""
-        depth = np.asarray(depth, float)
-        reached = self.deepest_after(depth, deepest)
-        risen = reached - depth
-        # inf times 0 has no value; at the deepest depth itself nothing has been released
-        released = np.multiply(self.unloading_ratio, risen, out=np.zeros(risen.shape), where=risen != 0)
-        result: FloatArray = self.snow_hardness * np.maximum(reached - released, 0.0)
-        return result
+    Attributes
+    ----------
+    snow_hardness
+        H_V (N/m³).
+    unloading_ratio
+        k_u/H_V ≥ 1.
 
-    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`: ε_max (1 - H_V/k_u)."""
-        return np.asarray(deepest, float) * self._kept
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeWithAngleLaw
+    skisnow.forces.penetration.HypoplasticPoint
 
-    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
-        return self.stress(depth, deepest) ** 2 / (2.0 * self.unloading_ratio * self.snow_hardness)
+    Notes
+    -----
+    Range, source: as `VolumeWithAngleLaw`; the unloading is ours, as in `HypoplasticPoint`. Only ``stress_and_energy``
+    depends on the angle: the other methods are those of a flat base, with a factor of 0.99. The energy of grooves cut
+    at 60° is 15 % above `lost_energy`.
 
-    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: ½ H_V ε_max² (1 - H_V/k_u)."""
-        return 0.5 * self.snow_hardness * np.asarray(deepest, float) ** 2 * self._kept
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
+
+    Examples
+    --------
+    0.2 N/mm³ pressed to 10 mm: 1.98 N/mm² flat, 2.199911 N/mm² at 45°.
+
+    >>> import numpy as np
+    >>> snow = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)
+    >>> round(float(snow.stress(0.010, 0.0)))
+    1980000
+    >>> round(float(snow.stress_and_energy(np.array([0.010]), np.array([0.010]), np.radians([45.0]))[0, 0]))
+    2199911
+    """
+
+    snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
+    unloading_ratio: float
+    _factor: ClassVar[float] = ANGLE_TERM[0]
+
+    def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:
+        """See `PointLaw.stress_and_energy`."""
+        b0, b1 = ANGLE_TERM
+        return (1.0 + b1 / b0 * edge_angle) * PointLaw.stress_and_energy(self, depth, deepest, edge_angle)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Mapping
 from typing import ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
+from ..._support.errors import ParameterError
 from ...geometry import Tool
 from ...snow import MeasuredRange
-from ..parameter_checks import PENETRATION_EDGE_ANGLE, edge_angles
+from ..parameter_checks import PENETRATION_EDGE_ANGLE, CheckedParameters, edge_angles
 
 DAMPING: Final = 0.0
 """c of p = H_V ε + c ε̇ (N s/m³) (modelling assumption, not in the paper's law)."""
@@ -25,21 +25,15 @@ DELAYED_SPACING: Final = 1e-3
 """
 
 
-class PenetrationLaw(abc.ABC):
+class PenetrationLaw(CheckedParameters, abc.ABC):
     """Force of snow against a tool pressed into it, normal to the snow surface.
 
-    A rival law is one frozen dataclass in a separate file, listed in ``LAWS``; it defines ``_force_in_contact``. If it
-    fails one of the shared checks of physics, ``exceptions`` states the reason.
+    A rival law is one frozen dataclass in a separate file, listed in ``LAWS``; it defines ``_force_in_contact``.
     """
 
     __slots__ = ()
     edge_angle_range: ClassVar[MeasuredRange | None] = PENETRATION_EDGE_ANGLE
     """Edge angles of the measurements behind the law; outside, `RangeWarning`."""
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        return {}
 
     def reaction_force(self, tool: Tool, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Component F_n (N) of the snow's force along the snow normal, ≥ 0.
@@ -63,7 +57,7 @@ class PenetrationLaw(abc.ABC):
         """F_n (N) for depths of at least 0 and angles of the same shape."""
 
 
-class PointLaw(abc.ABC):
+class PointLaw(CheckedParameters, abc.ABC):
     """Stress along the snow normal at one place on the snow, from its depth now and its maximum depth so far.
 
     The state of a place is one number, the maximum depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow
@@ -78,11 +72,6 @@ class PointLaw(abc.ABC):
     along_base_normal: ClassVar[bool] = False
     """Whether the snow's force is one along the normal of the base. Its part across, tan ϑ times the stress, is then
     the maximum side force of an edge; it grows with the displacement across, as every strength in a contact."""
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        return {}
 
     @property
     def bends(self) -> tuple[float, ...]:
@@ -115,3 +104,45 @@ class PointLaw(abc.ABC):
     @abc.abstractmethod
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
         """Energy per area (J/m²) that the groove of depth ε_max has cost for good."""
+
+
+class DeepeningPoint(PointLaw):
+    """Virgin loading by the depth, q(ε), and unloading by a multiple of its steepest growth so far.
+
+    A law gives ``unloading_ratio`` and `_loading`.
+    """
+
+    __slots__ = ()
+    unloading_ratio: float
+
+    @abc.abstractmethod
+    def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """q, the work ∫q and k_u at deepest depths."""
+
+    def _check_together(self) -> None:
+        if not 1.0 <= self.unloading_ratio < np.inf:
+            raise ParameterError(
+                "{kind}: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite"
+            ).tag("out_of_range", kind=type(self).__name__, unloading_ratio=self.unloading_ratio)
+
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stress`."""
+        depth = np.asarray(depth, float)
+        reached = self.deepest_after(depth, deepest)
+        loaded, _, unloading = self._loading(reached)
+        return np.maximum(loaded - unloading * (reached - depth), 0.0)
+
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.residual_depth`."""
+        loaded, _, unloading = self._loading(deepest)
+        return np.asarray(deepest, float) - loaded / unloading
+
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
+        _, _, unloading = self._loading(self.deepest_after(depth, deepest))
+        return self.stress(depth, deepest) ** 2 / (2.0 * unloading)
+
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.lost_energy`: the work of loading minus the recovered work."""
+        loaded, work, unloading = self._loading(deepest)
+        return np.maximum(work - loaded**2 / (2.0 * unloading), 0.0)  # elastic: rounding could be below 0

@@ -2,58 +2,16 @@
 
 from __future__ import annotations
 
-import abc
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..parameter_checks import require_above_zero, require_not_below_zero
-from .law import PointLaw
-
-
-class DeepeningPoint(PointLaw):
-    """Virgin loading by the depth, q(ε), and unloading by a multiple of its steepest growth so far.
-
-    A law gives ``unloading_ratio`` and `_loading`.
-    """
-
-    __slots__ = ()
-    unloading_ratio: float
-
-    @abc.abstractmethod
-    def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """q, the work ∫q and k_u at deepest depths."""
-
-    def _require_unloading(self) -> None:
-        if not 1.0 <= self.unloading_ratio < np.inf:
-            raise ParameterError(
-                "{kind}: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite"
-            ).tag("out_of_range", kind=type(self).__name__, unloading_ratio=self.unloading_ratio)
-
-    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`."""
-        depth = np.asarray(depth, float)
-        reached = self.deepest_after(depth, deepest)
-        loaded, _, unloading = self._loading(reached)
-        return np.maximum(loaded - unloading * (reached - depth), 0.0)
-
-    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`."""
-        loaded, _, unloading = self._loading(deepest)
-        return np.asarray(deepest, float) - loaded / unloading
-
-    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
-        _, _, unloading = self._loading(self.deepest_after(depth, deepest))
-        return self.stress(depth, deepest) ** 2 / (2.0 * unloading)
-
-    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: the work of loading minus the recovered work."""
-        loaded, work, unloading = self._loading(deepest)
-        return np.maximum(work - loaded**2 / (2.0 * unloading), 0.0)  # elastic: rounding could be below 0
+from ..parameter_checks import ABOVE_ZERO, NOT_BELOW_ZERO
+from .law import DeepeningPoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,18 +58,11 @@ class LayeredPoint(DeepeningPoint):
     [200000, 500000, 2500000]
     """
 
-    snow_hardness: float
+    snow_hardness: Annotated[float, ABOVE_ZERO]
     unloading_ratio: float
-    layer_depth: float
-    lower_hardness: float
-    hardness_growth: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_above_zero(
-            self, snow_hardness=self.snow_hardness, layer_depth=self.layer_depth, lower_hardness=self.lower_hardness
-        )
-        require_not_below_zero(self, hardness_growth=self.hardness_growth)
-        self._require_unloading()
+    layer_depth: Annotated[float, ABOVE_ZERO]
+    lower_hardness: Annotated[float, ABOVE_ZERO]
+    hardness_growth: Annotated[float, NOT_BELOW_ZERO] = 0.0
 
     @property
     def bends(self) -> tuple[float, ...]:
@@ -167,14 +118,13 @@ class ProfilePoint(DeepeningPoint):
     [200000, 500000, 2500000]
     """
 
-    snow_hardness: float
+    snow_hardness: Annotated[float, ABOVE_ZERO]
     unloading_ratio: float
     tops: tuple[float, ...]
-    shares: tuple[float, ...]
+    shares: Annotated[tuple[float, ...], ABOVE_ZERO]
 
-    def __post_init__(self) -> None:
-        require_above_zero(self, snow_hardness=self.snow_hardness, shares=min(self.shares, default=0.0))
-        self._require_unloading()
+    def _check_together(self) -> None:
+        DeepeningPoint._check_together(self)
         if len(self.tops) != len(self.shares) or self.tops[0] != 0.0 or np.any(np.diff(self.tops) <= 0.0):
             raise ParameterError(
                 "ProfilePoint: tops are {tops}; they must rise from 0, one for each of {count} shares"

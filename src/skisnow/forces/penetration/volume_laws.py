@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ...geometry import Tool
 from ...snow.published.moessner_2013 import ANGLE_TERM
-from ..parameter_checks import SNOW_HARDNESS, require_above_zero, require_finite
+from ..parameter_checks import ABOVE_ZERO, FINITE, SNOW_HARDNESS
 from .law import PenetrationLaw
 
 
@@ -51,11 +51,7 @@ class VolumeLaw(PenetrationLaw):
     400.0
     """
 
-    snow_hardness: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, snow_hardness=self.snow_hardness)
-        SNOW_HARDNESS.warn_outside(self.snow_hardness, "VolumeLaw", stacklevel=3)
+    snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
         return self.snow_hardness * tool.displaced_volume(depth, angle)
@@ -96,11 +92,7 @@ class VolumeWithAngleLaw(PenetrationLaw):
     439.98
     """
 
-    snow_hardness: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, snow_hardness=self.snow_hardness)
-        SNOW_HARDNESS.warn_outside(self.snow_hardness, "VolumeWithAngleLaw", stacklevel=3)
+    snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
         b0, b1 = ANGLE_TERM
@@ -147,22 +139,11 @@ class BilinearLaw(PenetrationLaw):
     480.0
     """
 
-    hardness: float
-    a0: float
-    a1: float
-    b0: float
-    b1: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, hardness=self.hardness)
-        require_finite(self, a0=self.a0, a1=self.a1, b0=self.b0, b1=self.b1)
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason: for a > 0 the area law's."""
-        if self.a0 <= 0:
-            return {}
-        return {"zero at zero depth": "with a > 0 a flat base feels H a L W the moment it touches the snow"}
+    hardness: Annotated[float, ABOVE_ZERO]
+    a0: Annotated[float, FINITE]
+    a1: Annotated[float, FINITE]
+    b0: Annotated[float, FINITE]
+    b1: Annotated[float, FINITE]
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
         a = self._coefficient_at("a", self.a0, self.a1, angle)

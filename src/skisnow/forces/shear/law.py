@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Mapping
 from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
@@ -11,26 +10,20 @@ import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ...snow import MeasuredRange
-from ..parameter_checks import edge_angles
+from ..parameter_checks import CheckedParameters, edge_angles
 
 
-class ShearLaw(abc.ABC):
+class ShearLaw(CheckedParameters, abc.ABC):
     """Force along the snow surface, across the edge, at which snow fails.
 
-    A rival law is one frozen dataclass in a separate file, listed in ``LAWS``; it defines ``_stress``. If it fails one
-    of the shared checks of physics, ``exceptions`` states the reason. The force acts against the side on which the edge
-    presses; it is equal on both sides (modelling assumption).
+    A rival law is one frozen dataclass in a separate file, listed in ``LAWS``; it defines ``_stress``. The force acts
+    against the side on which the edge presses; it is equal on both sides (modelling assumption).
     """
 
     __slots__ = ()
     edge_depth_range: ClassVar[MeasuredRange | None] = None
     edge_angle_range: ClassVar[MeasuredRange | None] = None
     """Measured range, if known; outside it, `RangeWarning`."""
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        return {}
 
     def failure_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Tangential force per length and depth of the edge, F_t/(L e) (N/m²).
@@ -81,35 +74,14 @@ With this one a circle at 80 % of the grip is half a percent wide, and a smaller
 docs/methods/side-force.md.
 """
 
-
 RESIDUAL_RATIO: Final = 1.0
-"""Strength after slip over that before it (modelling assumption: the paper measured where shearing starts)."""
+"""Strength after slip over that before it, r of 1 - (1 - r) min(slip/d, 1) (modelling assumption: not measured).
+
+Mössner and others (2013) presume that snow that is being sheared is weaker than S_f. McClung (1977, J. Glaciol. 19(81))
+found softening after the peak in direct shear of snow.
+"""
 SLIP_WEAKENING: Final = 1e-3
-"""Slip (m) over which it is reached (modelling assumption)."""
-
-
-def strength_left(
-    slip: npt.ArrayLike, *, residual_ratio: float = RESIDUAL_RATIO, slip_weakening: float = SLIP_WEAKENING
-) -> FloatArray:
-    """Share of a strength that is left after a slip: 1 - (1 - r) min(slip/d, 1).
-
-    slip: how far the edge has slipped across at a place on the snow (m), ≥ 0.
-    residual_ratio: r, 0 to 1; 1: nothing is lost.
-    slip_weakening: d (m), > 0.
-
-    Range: r and d are not measured for groomed snow. Mössner and others (2013) presume that snow that is being sheared
-    is weaker than S_f. McClung (1977, J. Glaciol. 19(81)) found softening after the peak in direct shear of snow. To
-    fall in proportion to the slip is the plainest form of slip weakening (modelling assumption).
-
-    Half of the strength, reached over 2 mm: after 1 mm three quarters are left.
-
-    >>> float(strength_left(1e-3, residual_ratio=0.5, slip_weakening=2e-3))
-    0.75
-    """
-    gone = np.minimum(np.asarray(slip, float) / slip_weakening, 1.0)
-    result: FloatArray = 1.0 - (1.0 - residual_ratio) * gone
-    return result
-
+"""Slip d (m) over which it is reached, in proportion to the slip (modelling assumption)."""
 
 Bearing: TypeAlias = Literal["whole-edge", "loaded-height"]
 """Height by which an edge holds against a motion inwards: all of its depth, or the part whose base bears, the square

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,13 +13,13 @@ from ..._support.errors import ParameterError
 from ...snow import MeasuredRange
 from ...snow.published.lieu_mote_1985 import SNOW_OVER_ICE
 from ..parameter_checks import (
+    ABOVE_ZERO,
     FAILURE_SHEAR_STRESS,
     ICE_CUTTING_DEPTH,
     ICE_CUTTING_EDGE_ANGLE,
+    NOT_BELOW_ZERO,
     RIGHT_ANGLE,
     edge_angles,
-    require_above_zero,
-    require_not_below_zero,
 )
 from .law import ShearLaw
 
@@ -65,25 +64,16 @@ class MachiningShear(ShearLaw):
     500.0
     """
 
-    dynamic_shear_strength: float
-    transverse_friction: float
+    dynamic_shear_strength: Annotated[float, ABOVE_ZERO]
+    transverse_friction: Annotated[float, NOT_BELOW_ZERO]
     least_shear_plane: float = field(default=0.0, kw_only=True)
 
-    def __post_init__(self) -> None:
-        require_above_zero(self, dynamic_shear_strength=self.dynamic_shear_strength)
-        require_not_below_zero(self, transverse_friction=self.transverse_friction)
+    def _check_together(self) -> None:
         if not 0.0 <= self.least_shear_plane <= RIGHT_ANGLE / 2.0:
             raise ParameterError(
                 "MachiningShear: least_shear_plane is {least_shear_plane!r} rad; it must lie between 0 and π/4"
             ).tag("out_of_range", least_shear_plane=self.least_shear_plane)
-        FAILURE_SHEAR_STRESS.warn_outside(2.0 * self.dynamic_shear_strength, "MachiningShear, 2 S", stacklevel=3)
-
-    @property
-    def exceptions(self) -> Mapping[str, str]:
-        """Shared checks of physics that this law fails, each with the reason."""
-        return {
-            "finite at every edge angle": "the force grows without bound as ϑ falls to β; below β there is no force"
-        }
+        FAILURE_SHEAR_STRESS.warn_outside(2.0 * self.dynamic_shear_strength, "MachiningShear, 2 S", stacklevel=4)
 
     def thrust_force(
         self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
@@ -144,12 +134,11 @@ class IceCuttingShear(ShearLaw):
     """
 
     ice_coefficients: tuple[tuple[float, ...], ...]
-    snow_over_ice: float = field(default=SNOW_OVER_ICE, kw_only=True)
+    snow_over_ice: Annotated[float, ABOVE_ZERO] = field(default=SNOW_OVER_ICE, kw_only=True)
     edge_depth_range: ClassVar[MeasuredRange | None] = ICE_CUTTING_DEPTH
     edge_angle_range: ClassVar[MeasuredRange | None] = ICE_CUTTING_EDGE_ANGLE
 
-    def __post_init__(self) -> None:
-        require_above_zero(self, snow_over_ice=self.snow_over_ice)
+    def _check_together(self) -> None:
         rows = self.ice_coefficients
         if len({len(row) for row in rows}) != 1 or not rows[0] or not np.all(np.isfinite(rows)):
             raise ParameterError(

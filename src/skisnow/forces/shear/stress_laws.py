@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -13,12 +14,12 @@ from ...snow.published import domine_2011, moessner_2013
 from ...snow.published.domine_2011 import LEAST_DENSITY
 from ...snow.published.moessner_2013 import STRESS_BY_ANGLE, STRESS_BY_DENSITY
 from ..parameter_checks import (
+    ABOVE_ZERO,
     FAILURE_SHEAR_STRESS,
+    FINITE,
     GROOMED_SNOW_DENSITY,
     NATURAL_SNOW_DENSITY,
     RIGHT_ANGLE,
-    require_above_zero,
-    require_finite,
 )
 from .law import ShearLaw
 
@@ -59,11 +60,7 @@ class ConstantShear(ShearLaw):
     120.0
     """
 
-    failure_shear_stress: float
-
-    def __post_init__(self) -> None:
-        require_above_zero(self, failure_shear_stress=self.failure_shear_stress)
-        FAILURE_SHEAR_STRESS.warn_outside(self.failure_shear_stress, "ConstantShear", stacklevel=3)
+    failure_shear_stress: Annotated[float, ABOVE_ZERO, FAILURE_SHEAR_STRESS]
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
         return np.full(depth.shape, self.failure_shear_stress)
@@ -105,18 +102,15 @@ class AngleShear(ShearLaw):
     34.3
     """
 
-    flat_shear_stress: float
-    relative_decrease: float
+    flat_shear_stress: Annotated[float, ABOVE_ZERO, FAILURE_SHEAR_STRESS]
+    relative_decrease: Annotated[float, FINITE]
 
-    def __post_init__(self) -> None:
-        require_above_zero(self, flat_shear_stress=self.flat_shear_stress)
-        require_finite(self, relative_decrease=self.relative_decrease)
+    def _check_together(self) -> None:
         if self.relative_decrease * RIGHT_ANGLE > 1.0:
             raise ParameterError(
                 "AngleShear: with a relative_decrease of {relative_decrease!r} per rad the stress is negative on an "
                 "upright edge; it must be at most 2/π = 0.637 per rad (Eqn 13: 0.266)"
             ).tag("out_of_range", relative_decrease=self.relative_decrease)
-        FAILURE_SHEAR_STRESS.warn_outside(self.flat_shear_stress, "AngleShear", stacklevel=3)
 
     @classmethod
     def soft_snow(cls) -> AngleShear:
@@ -159,9 +153,9 @@ class DensityShear(ShearLaw):
     108.0
     """
 
-    snow_density: float
+    snow_density: Annotated[float, GROOMED_SNOW_DENSITY]
 
-    def __post_init__(self) -> None:
+    def _check_together(self) -> None:
         intercept, slope = STRESS_BY_DENSITY
         minimum = -intercept / slope
         if not minimum < self.snow_density <= ICE_DENSITY:
@@ -177,7 +171,6 @@ class DensityShear(ShearLaw):
                 lowest=GROOMED_SNOW_DENSITY.lowest,
                 highest=GROOMED_SNOW_DENSITY.highest,
             )
-        GROOMED_SNOW_DENSITY.warn_outside(self.snow_density, "DensityShear", stacklevel=3)
 
     @property
     def failure_shear_stress(self) -> float:
@@ -222,16 +215,15 @@ class NaturalDensityShear(ShearLaw):
     15.85
     """
 
-    snow_density: float
+    snow_density: Annotated[float, NATURAL_SNOW_DENSITY]
 
-    def __post_init__(self) -> None:
+    def _check_together(self) -> None:
         if not LEAST_DENSITY < self.snow_density <= ICE_DENSITY:
             raise ParameterError(
                 "NaturalDensityShear: snow_density is {snow_density!r} kg/m³; the square (0.1027 ρ - 11.5323)² is 0 "
                 "at {least_density:.1f} kg/m³ and rises again below it, and no snow is denser than {ice_density:g} "
                 "kg/m³; give a density between them"
             ).tag("out_of_range", snow_density=self.snow_density, least_density=LEAST_DENSITY, ice_density=ICE_DENSITY)
-        NATURAL_SNOW_DENSITY.warn_outside(self.snow_density, "NaturalDensityShear", stacklevel=3)
 
     @property
     def failure_shear_stress(self) -> float:
