@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -14,11 +15,11 @@ from scipy.optimize import least_squares
 
 from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, identify, intervals
-from skisnow.identification.intervals import BootstrapBy, _resample, add_bootstrap_intervals
+from skisnow.identification.intervals import _resample, add_bootstrap_intervals
 from skisnow.identification.parameter import Parameter
 from skisnow.identification.problem import Fit, Kind, Values, unweighted_problem
-from skisnow.identification.solution import build_identification
-from skisnow.identification.solving import SearchRequest, solution_of
+from skisnow.identification.solution import BootstrapBy, SearchRequest, build_identification
+from skisnow.identification.solving import Solver
 from tests.coded import raises
 from tests.present import present
 
@@ -33,17 +34,14 @@ class Decay:
     """y = a exp(-b x), far from linear in b with so much noise."""
 
     kind: Kind = "photo_cells"
-    runs = ("one",)
+    used_keys: tuple[str, ...] | None = ("a", "b")
     nuisances = 0
     accuracy_is_stated = True
     points = len(X)
-    series = (len(X),)
+    series: tuple[int, ...] = (len(X),)
 
     def __init__(self, seed: int) -> None:
         self.y = 2.0 * np.exp(-1.5 * X) + SD * np.random.default_rng(seed).standard_normal(len(X))
-
-    def depends_on(self, key: str) -> bool:
-        return key in ("a", "b")
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[np.ndarray | None]:  # noqa: ARG002
         return [(each["a"] * np.exp(-each["b"] * X) - self.y) / SD for each in many]
@@ -60,9 +58,9 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     parameters = tuple(Parameter(key=key, name=key, start=1.0, lower=0.01, upper=20.0, size=1.0) for key in ("a", "b"))
     rng = np.random.default_rng(3)
     plan = SearchRequest(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, progress=lambda _: None)
-    solution = solution_of(unweighted_problem(parameters, (decay,)), plan)
-    found = build_identification(solution, "", (), ())
-    return decay, add_bootstrap_intervals(found, solution, 80, by, np.random.default_rng(4), lambda _: None)
+    solution = Solver(unweighted_problem(parameters, (decay,)), plan).solution()
+    plan = replace(plan, bootstrap=80, bootstrap_by=by, rng=np.random.default_rng(4))
+    return decay, add_bootstrap_intervals(build_identification(solution, plan), solution, plan)
 
 
 def test_drawn_errors_have_zero_mean() -> None:

@@ -280,9 +280,7 @@ def test_a_language_without_texts_is_rejected_before_anything_is_written(
 
 def test_every_warning_about_identified_values_has_its_german_one() -> None:
     """Whatever pair, whatever value: as the report shows them, each with its full stop."""
-    further = [words.model_warning(0.9), words.noise_warning(3.0), words.few_points_warning(4, 2) or ""]
-    german = [Message("{warning}.", warning=each).text("de") for each in further]
-    german += [
+    german = [
         Message("{warning}.", warning=each).text("de") for each in (*words._HELPS.values(), *words._ALONE.values())
     ]
     assert [each for each in german if ENGLISH.search(each)] == []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -24,14 +24,14 @@ from ..scenario.resolution import ScenarioInput
 from .data import Data, IdentificationData, collect_data, fingerprint, start_values
 from .groove_residuals import GrooveResiduals, require_groove_stays
 from .grooves_alone import identify_from_grooves
-from .intervals import BootstrapBy, require_bootstrap
-from .parameter import Parameter, parameter_table, unused_tables
+from .intervals import require_bootstrap
+from .parameter import Parameter, parameter_table
 from .photo_cell_times import PhotoCellTimes
 from .problem import Kind, Observations, expand_keys, unweighted_problem
 from .result import Effort, Identification
 from .simulations import RunSimulation, Simulations
-from .solution import too_few_points
-from .solving import SearchRequest, solve
+from .solution import BootstrapBy, SearchRequest, too_few_points
+from .solving import solve
 from .track_positions import TrackPositions
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
@@ -131,7 +131,13 @@ def identify(
     tables = given_parameters(scenario_input.identify)
     if clock_is_free is None:
         clock_is_free = scenario_input.identify.get("clock", "start") == "free"
-    keys = _named_keys(free, tables)
+    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
+    if not keys:
+        raise ParameterError(
+            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario'
+        ).tag("nothing_free")
+    fixed = [key for key in tables if key.partition("@")[0] not in {free.partition("@")[0] for free in keys}]
+    unused = f"{', '.join(fixed)} have a table under [identify] but are not free. They keep the scenario's values"
     measurements = collect_data(
         scenario_input, scenario_file, [data] if isinstance(data, Data | str | Path) else data, keys
     )
@@ -156,7 +162,7 @@ def identify(
             posterior=posterior,
             rng=np.random.default_rng(0) if rng is None else rng,
             progress=counted.about,
-            warnings=(*measurements.warnings, *_unused_table_warnings(keys, tables)),
+            warnings=(*measurements.warnings, *([unused] if fixed else [])),
             methods=measurements.methods,
         )
         result = _search_parameters(parameters, observations, request)
@@ -172,22 +178,12 @@ def identify(
         )
 
 
-def _named_keys(free: str | Sequence[str], tables: Iterable[str]) -> tuple[str, ...]:
-    """Keys that are named as free, otherwise those with a table in the scenario."""
-    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
-    if not keys:
-        raise ParameterError(
-            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario'
-        ).tag("nothing_free")
-    return keys
-
-
 def _search_parameters(
     parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], request: SearchRequest
 ) -> Identification:
     problem = unweighted_problem(parameters, observations)
     if not problem.priors and problem.points < len(parameters) + problem.nuisances + (not problem.accuracy_is_stated):
-        return too_few_points(problem, request.title, request.warnings)
+        return too_few_points(problem, request)
     only = observations[0]
     if len(observations) == 1 and isinstance(only, GrooveResiduals):
         return identify_from_grooves(parameters, only, request)
@@ -218,18 +214,11 @@ _KINDS: Final[dict[Kind, Message]] = {
 
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
     for key in (key.partition("@")[0] for key in keys):
-        if not any(observation.depends_on(key) for observation in observations):
+        if not any(observation.used_keys is None or key in observation.used_keys for observation in observations):
             kinds = [_KINDS[kind] for kind in dict.fromkeys(observation.kind for observation in observations)]
             raise ParameterError(
                 "--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it"
             ).tag("unused_key", key=key, kinds=kinds)
-
-
-def _unused_table_warnings(free: Sequence[str], tables: Mapping[str, object]) -> tuple[str, ...]:
-    fixed = unused_tables(free, tables)
-    if not fixed:
-        return ()
-    return (f"{', '.join(fixed)} have a table under [identify] but are not free. They keep the scenario's values",)
 
 
 @dataclass(slots=True)

@@ -39,7 +39,7 @@ USED_KEYS: Final = (
     "slope.angle_deg",
     "slope.gravity_m_per_s2",
 )
-"""Keys that the grooves depend on."""
+"""Keys that the grooves depend on; on speed and heading only where the edge slides."""
 STRAIGHTEST: Final = 1e6
 """Radius (m) of a practically straight path, used if the grip is too small for a turn."""
 
@@ -66,41 +66,18 @@ class GrooveResiduals:
     measured: MeasuredGrooves
     scenario: ScenarioFile
     slides: bool = False
+    kind: Kind = field(default="marks", init=False)
+    used_keys: tuple[str, ...] | None = field(default=USED_KEYS, init=False)
+    points: int = field(init=False)
+    nuisances: int = field(default=0, init=False)
+    accuracy_is_stated: bool = field(init=False)
+    series: tuple[int, ...] = field(init=False)
     _cache: dict[tuple[float, ...], Groove | None] = field(init=False, default_factory=dict)
 
-    @property
-    def kind(self) -> Kind:
-        """Kind of the data: grooves."""
-        return "marks"
-
-    @property
-    def runs(self) -> tuple[str, ...]:
-        """None: all grooves are of one passage."""
-        return ()
-
-    def depends_on(self, key: str) -> bool:
-        """Snow, edge angle, mass, slope; speed and heading only where the edge slides."""
-        return key in USED_KEYS
-
-    @property
-    def points(self) -> int:
-        """Numbers measured."""
-        return sum(self.series)
-
-    @property
-    def nuisances(self) -> int:
-        """None."""
-        return 0
-
-    @property
-    def accuracy_is_stated(self) -> bool:
-        """True if the file contains standard deviations."""
-        return self.measured.stated
-
-    @property
-    def series(self) -> tuple[int, ...]:
-        """Number of depths, widths and radii that are used."""
-        return tuple(int(np.sum(use)) for _, _, use in self._columns())
+    def __post_init__(self) -> None:
+        self.series = tuple(int(np.sum(use)) for _, _, use in self._columns())
+        self.points = sum(self.series)
+        self.accuracy_is_stated = self.measured.stated
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of depths, widths, radii."""

@@ -15,8 +15,8 @@ from .groove_residuals import STRENGTH_KEY, GrooveResiduals
 from .parameter import Parameter
 from .problem import unweighted_problem
 from .result import REASONS, Identification, Identified, Outcome
-from .solution import build_identification, too_few_points
-from .solving import SearchRequest, add_requested_intervals, solution_of, solve
+from .solution import SearchRequest, too_few_points
+from .solving import Solver, solve
 
 SLIDING_PROBABILITY: Final = 0.01
 """Probability of the grooves, given an edge that holds, below which the edge is assumed to have slid."""
@@ -51,7 +51,7 @@ def _edge_slid(others: tuple[Parameter, ...], grooves: GrooveResiduals, plan: Se
         problem = unweighted_problem(others, (grooves,))
         if problem.points <= len(others):
             return False
-        solution = solution_of(problem, replace(plan, starts=1, progress=lambda _: None))
+        solution = Solver(problem, replace(plan, starts=1, progress=lambda _: None)).solution()
         values = problem.values(solution.optimum.place)
         residuals, dof = grooves.residuals([values])[0], problem.points - len(others)
     groove = grooves.groove(values)
@@ -77,7 +77,7 @@ def _identify_sliding(
     problem = unweighted_problem(chosen, (sliding,))
     plan = replace(plan, methods=(*plan.methods, method))
     if problem.points < len(chosen):
-        return too_few_points(problem, plan.title, plan.warnings)
+        return too_few_points(problem, plan)
     return solve(problem, plan)
 
 
@@ -89,7 +89,7 @@ def _identify_holding(
     plan: SearchRequest,
 ) -> Identification:
     """Identify the other parameters; the turn gives a lower bound of S_f."""
-    identification = _identify_others(others, grooves, plan) if others else _compare_only(grooves, plan)
+    identification = solve(unweighted_problem(others, (grooves,)), plan) if others else _compare_only(grooves, plan)
     values = {key: value for key, value in identification.values.items() if value is not None}
     bound, low = _strength_bound(grooves, values, identification)
     needed = "says nothing" if bound is None or low is None else f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
@@ -116,12 +116,6 @@ def _identify_holding(
         posterior=_with_gaps(identification.posterior, places, p),
         warnings=(warning, *identification.warnings),
     )
-
-
-def _identify_others(others: tuple[Parameter, ...], grooves: GrooveResiduals, plan: SearchRequest) -> Identification:
-    solution = solution_of(unweighted_problem(others, (grooves,)), plan)
-    identification = build_identification(solution, plan.title, plan.warnings, plan.methods)
-    return add_requested_intervals(identification, solution, plan)
 
 
 def _compare_only(grooves: GrooveResiduals, plan: SearchRequest) -> Identification:

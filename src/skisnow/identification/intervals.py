@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -17,7 +17,7 @@ from ..statistics import percentile_interval
 from .parameter import bounds_of
 from .result import Identification, Identified, Profile
 from .search import Progress, step_inside
-from .solution import Solution, best_fit_residuals, values_at
+from .solution import SearchRequest, Solution, best_fit_residuals, values_at
 
 PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)
 """Positions of the values of a profile, in standard errors from the best value."""
@@ -33,7 +33,7 @@ _BURN_IN: Final = 0.3
 _SMALL_BALL: Final = 0.5
 
 
-def add_profile_intervals(identification: Identification, solution: Solution, progress: Progress) -> Identification:
+def add_profile_intervals(identification: Identification, solution: Solution, plan: SearchRequest) -> Identification:
     """Add profile-likelihood intervals: fix each parameter at several values and refit all others.
 
     The interval ends where the rise is the square of the factor of the interval by curvature: 3.84 with stated noise.
@@ -44,7 +44,7 @@ def add_profile_intervals(identification: Identification, solution: Solution, pr
     limit = uncertainty.factor**2 * (solution.widening**2)
     profiles, parameters = [], list(identification.parameters)
     for j, parameter in enumerate(solution.problem.parameters):
-        progress(f"profile of {parameter.name}")
+        plan.progress(f"profile of {parameter.name}")
         error = float(uncertainty.standard_errors[j])
         if not np.isfinite(error):
             continue
@@ -125,11 +125,9 @@ def _ends(best: float, place: FloatArray, rise: FloatArray, limit: float) -> tup
     return ends[0], ends[1]
 
 
-def add_posterior_intervals(
-    identification: Identification, solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
-) -> Identification:
+def add_posterior_intervals(identification: Identification, solution: Solution, plan: SearchRequest) -> Identification:
     """Add posterior samples and intervals, sampled by emcee inside the bounds."""
-    places, how = posterior_places(solution, samples, rng, progress)
+    places, how = posterior_places(solution, plan.posterior, plan.rng, plan.progress)
     if places is None:
         return replace(identification, warnings=(*identification.warnings, how))
     values = values_at(solution, places)
@@ -149,7 +147,7 @@ def require_emcee() -> Any:
 
 
 def posterior_places(
-    solution: Solution, samples: int, rng: np.random.Generator, progress: Callable[[str], None]
+    solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
 ) -> tuple[FloatArray | None, str]:
     """About `samples` samples (N, p) on the scale of the search, and a sentence on the method.
 
@@ -211,8 +209,6 @@ def _true(solution: Solution) -> Callable[[FloatArray], FloatArray]:
     return log_probability
 
 
-BootstrapBy: TypeAlias = Literal["refit", "linear"]
-
 FEWEST: Final = 40
 """Minimum number of resamples: the ends of a 95 % interval are then the smallest and the largest of them."""
 MOST_STEPS: Final = 4
@@ -247,14 +243,7 @@ def require_bootstrap(resamples: int, method: str) -> None:
         ).tag("too_few_resamples", resamples=resamples, fewest=FEWEST)
 
 
-def add_bootstrap_intervals(
-    identification: Identification,
-    solution: Solution,
-    resamples: int,
-    by: BootstrapBy,
-    rng: np.random.Generator,
-    progress: Progress,
-) -> Identification:
+def add_bootstrap_intervals(identification: Identification, solution: Solution, plan: SearchRequest) -> Identification:
     """Add bootstrap intervals: resample blocks of residuals and refit each resample.
 
     The length of a block is the cube root of that of its series, at least 3, so correlated noise stays correlated.
@@ -264,14 +253,14 @@ def add_bootstrap_intervals(
     """
     if solution.optimum.jacobian is None or solution.degrees_of_freedom < 1:
         return identification
-    samples = [_Resample(drawn, place, place) for drawn, place in _begin(solution, resamples, rng)]
+    samples = [_Resample(drawn, place, place) for drawn, place in _begin(solution, plan)]
     lost = 0
-    if by == "refit":
-        progress("bootstrap: first resamples")
-        _refit_samples(solution, samples, progress)
+    if plan.bootstrap_by == "refit":
+        plan.progress("bootstrap: first resamples")
+        _refit_samples(solution, samples, plan.progress)
         lost = sum(not np.isfinite(sample.cost) for sample in samples)
         samples = [sample for sample in samples if np.isfinite(sample.cost)]
-    warnings = (f"{lost} of {resamples} resamples of the bootstrap could not be computed",) if lost else ()
+    warnings = (f"{lost} of {plan.bootstrap} resamples of the bootstrap could not be computed",) if lost else ()
     if len(samples) < FEWEST:
         return replace(identification, warnings=(*identification.warnings, *warnings))
     values = values_at(solution, np.array([sample.best for sample in samples]))
@@ -281,7 +270,7 @@ def add_bootstrap_intervals(
         else replace(parameter, bootstrap_interval=(float(low), float(high)))
         for parameter, (low, high) in zip(identification.parameters, percentile_interval(values), strict=True)
     )
-    how = "refitted" if by == "refit" else Message("fitted by the model linearised at the best values")
+    how = "refitted" if plan.bootstrap_by == "refit" else Message("fitted by the model linearised at the best values")
     method = Message(
         "bootstrap: {n_samples} resamples of stretches of residuals, each {how}", n_samples=len(samples), how=how
     )
@@ -294,7 +283,7 @@ def add_bootstrap_intervals(
     )
 
 
-def _begin(solution: Solution, resamples: int, rng: np.random.Generator) -> Iterator[tuple[FloatArray, FloatArray]]:
+def _begin(solution: Solution, plan: SearchRequest) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Residuals of each resample at the best place, and the bounded minimum of the linearised model."""
     fitted, jacobian = solution.optimum.residuals, solution.optimum.jacobian
     assert jacobian is not None
@@ -303,10 +292,10 @@ def _begin(solution: Solution, resamples: int, rng: np.random.Generator) -> Iter
     inflated = np.sqrt(data / max(solution.degrees_of_freedom, 1))
     lower, upper = bounds_of(solution.problem.parameters)
     best = solution.optimum.place
-    for _ in range(resamples):
+    for _ in range(plan.bootstrap):
         drawn = np.zeros_like(fitted)
-        drawn[:data] = inflated * _resample(fitted[:data], series, rng)
-        drawn[data:] = rng.standard_normal(len(fitted) - data)
+        drawn[:data] = inflated * _resample(fitted[:data], series, plan.rng)
+        drawn[data:] = plan.rng.standard_normal(len(fitted) - data)
         yield drawn, best + step_inside(jacobian, drawn, lower - best, upper - best)
 
 

@@ -29,7 +29,6 @@ class Parameter:
     logarithmic: True if the search uses its logarithm, for a positive quantity that spans decades; its interval is a
         factor.
     prior_mean, prior_sd: Normal prior distribution; None without a prior.
-    free: False if the parameter keeps its start.
     Raises ParameterError: a number is not finite, bounds are swapped or exclude the start, half a prior is given, a
         standard deviation is not above 0, or a logarithmic parameter may reach 0.
 
@@ -50,7 +49,6 @@ class Parameter:
     logarithmic: bool = False
     prior_mean: float | None = None
     prior_sd: float | None = None
-    free: bool = True
 
     def __post_init__(self) -> None:
         for name in ("start", "lower", "upper", "size"):
@@ -121,11 +119,6 @@ class Parameter:
         return (value - self.prior_mean) / self.prior_sd
 
 
-def values_of(parameters: tuple[Parameter, ...], scaled: FloatArray) -> dict[str, float]:
-    """The values by key at a place of the search, shape (p,)."""
-    return {parameter.key: parameter.value(float(u)) for parameter, u in zip(parameters, scaled, strict=True)}
-
-
 def bounds_of(parameters: tuple[Parameter, ...]) -> tuple[FloatArray, FloatArray]:
     """Bounds on the scale of the search, (p,) each."""
     lower = np.array([parameter.scaled(parameter.lower) for parameter in parameters])
@@ -185,9 +178,3 @@ def _make_parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Ma
         prior_mean=entries.get("prior_mean"),
         prior_sd=entries.get("prior_sd"),
     )
-
-
-def unused_tables(free: Sequence[str], tables: Mapping[str, Any]) -> tuple[str, ...]:
-    """Keys with a table ``[identify."KEY"]`` that are not free; they keep the scenario's value."""
-    own = {key.partition("@")[0] for key in free}
-    return tuple(key for key in tables if key.partition("@")[0] not in own)

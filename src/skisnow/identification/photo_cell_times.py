@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -38,6 +38,12 @@ class PhotoCellTimes:
     scenario: ScenarioFile
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     clock_is_free: bool = False
+    kind: Kind = field(default="photo_cells", init=False)
+    used_keys: tuple[str, ...] | None = field(default=USED_KEYS, init=False)
+    points: int = field(init=False)
+    nuisances: int = field(init=False)
+    accuracy_is_stated: bool = field(init=False)
+    series: tuple[int, ...] = field(init=False)
     _line: SlopeLine = field(init=False)
     _skis: float = field(init=False)
 
@@ -63,41 +69,10 @@ class PhotoCellTimes:
                     station=run.station[-1],
                     length=self._line.length,
                 )
-
-    @property
-    def kind(self) -> Kind:
-        """Kind of the data: times of photo cells."""
-        return "photo_cells"
-
-    @property
-    def runs(self) -> tuple[str, ...]:
-        """Names of the runs."""
-        return tuple(run.name for run in self.cells.runs)
-
-    def depends_on(self, key: str) -> bool:
-        """Friction, drag, start speed, mass, slope."""
-        return key in USED_KEYS
-
-    @property
-    def points(self) -> int:
-        """Number of passages, without those at the start of a clock that starts there."""
-        at_start = 0 if self.clock_is_free else sum(float(run.station[0]) == 0.0 for run in self.cells.runs)
-        return sum(len(run.station) for run in self.cells.runs) - at_start
-
-    @property
-    def nuisances(self) -> int:
-        """An offset for each run whose clock is free."""
-        return len(self.cells.runs) if self.clock_is_free else 0
-
-    @property
-    def accuracy_is_stated(self) -> bool:
-        """True if the file contains standard deviations."""
-        return self.cells.runs[0].time_sd is not None
-
-    @property
-    def series(self) -> tuple[int, ...]:
-        """Passages of each run."""
-        return tuple(len(self._cells_after_start(run)[0]) for run in self.cells.runs)
+        self.series = tuple(len(self._cells_after_start(run)[0]) for run in self.cells.runs)
+        self.points = sum(self.series)
+        self.nuisances = len(self.cells.runs) if self.clock_is_free else 0
+        self.accuracy_is_stated = self.cells.runs[0].time_sd is not None
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of every passage, run after run, for each set of values; never None."""
@@ -114,15 +89,9 @@ class PhotoCellTimes:
         for run in self.cells.runs:
             station, time, sd = self._cells_after_start(run)
             late = self._passage_times(run, station, [values])[0] - time
-            fitted = time + self._without_offset(late, sd)
-            columns = (values[:, None] for values in (time, fitted, sd))
-            measured, computed, spread = columns
-            fits.append(
-                Fit(
-                    name=run.name, kind="photo_cells", along=station, labels=("time (s)",), measured=measured,
-                    fitted=computed, sd=spread,
-                )
-            )  # fmt: skip
+            numbers = (time, time + self._without_offset(late, sd), sd)
+            columns = dict(zip(("measured", "fitted", "sd"), (column[:, None] for column in numbers), strict=True))
+            fits.append(Fit(name=run.name, kind="photo_cells", along=station, labels=("time (s)",), **columns))
         return tuple(fits)
 
     def warnings(self, values: Values) -> tuple[str, ...]:  # noqa: ARG002 - the same for all values
@@ -146,24 +115,19 @@ class PhotoCellTimes:
     def _passage_times(self, run: PhotoCellRun, station: FloatArray, many: Sequence[Values]) -> FloatArray:
         fixed = {**self.scenario.values, **self.starts.get(run.name, {})}
         sets = [{**fixed, **run_values(values, run.name)} for values in many]
-        descriptions = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
-        return passage_times(self._slope_line(sets), self._make_glide(sets), station, max(descriptions, 1e-3))
+        duration = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
 
-    def _slope_line(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
-        if not isinstance(self.scenario.scenario.slope, Plane):
-            return self._line
-        angle = np.array([values["slope.angle_deg"] for values in sets]) * DEGREE
-        return planes(angle)
-
-    def _make_glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
         def values_of_key(key: str) -> FloatArray:
             return np.array([float(values[key]) for values in sets])
 
+        is_plane = isinstance(self.scenario.scenario.slope, Plane)
+        line = planes(values_of_key("slope.angle_deg") * DEGREE) if is_plane else self._line
         mass = values_of_key("sledge.mass_kg") + self._skis
-        return Glide(
+        glide = Glide(
             friction=values_of_key("friction.mu_0"),
             friction_by_speed=values_of_key("friction.mu_1_s_per_m"),
             drag_per_mass=0.5 * values_of_key("drag.air_density_kg_per_m3") * values_of_key("drag.drag_area_m2") / mass,
             speed=values_of_key("start.speed_m_per_s"),
             gravity=values_of_key("slope.gravity_m_per_s2"),
         )
+        return passage_times(line, glide, station, max(duration, 1e-3))

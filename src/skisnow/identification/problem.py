@@ -13,7 +13,7 @@ from .._support.errors import ParameterError
 from .._support.units import ShownFields
 from ..parameters import suggest_and_list
 from ..scenario.keys import EACH
-from .parameter import Parameter, values_of
+from .parameter import Parameter
 
 Values: TypeAlias = Mapping[str, float]
 """Parameters by key, in the units that the keys name."""
@@ -68,8 +68,8 @@ class Problem:
         return [self._weighted_residuals([part[i] for part in parts], many[i]) for i in range(len(many))]
 
     def values(self, place: FloatArray) -> dict[str, float]:
-        """Parameters by key."""
-        return values_of(self.parameters, place)
+        """Parameters by key at a place of the search, shape (p,)."""
+        return {parameter.key: parameter.value(float(u)) for parameter, u in zip(self.parameters, place, strict=True)}
 
     def with_noise_of(self, residuals: FloatArray) -> Problem:
         """The problem with the noise estimated from these residuals, unless it is stated."""
@@ -133,34 +133,22 @@ class Fit(ShownFields):
 
 
 class Observations(Protocol):
-    """Data of one kind."""
+    """Data of one kind.
 
-    @property
-    def kind(self) -> Kind:
-        """Kind of the data."""
+    kind: kind of the data.
+    used_keys: keys of the scenario that can affect these data; None: all.
+    points: number of points: times of a track, cells passed, numbers measured at places of grooves.
+    nuisances: number of values that are fitted inside the residuals, such as the offset of a clock.
+    accuracy_is_stated: True if residuals are in stated standard deviations, False if these are estimated.
+    series: lengths of the time series in the residuals.
+    """
 
-    @property
-    def runs(self) -> tuple[str, ...]:
-        """Names of the runs; each can have a separate start."""
-
-    @property
-    def points(self) -> int:
-        """Number of points: times of a track, cells passed, places of grooves."""
-
-    def depends_on(self, key: str) -> bool:
-        """True if the scenario's key can affect these data."""
-
-    @property
-    def nuisances(self) -> int:
-        """Number of values that are fitted inside the residuals, such as the offset of a clock."""
-
-    @property
-    def accuracy_is_stated(self) -> bool:
-        """True if residuals are in stated standard deviations, False if these are estimated."""
-
-    @property
-    def series(self) -> tuple[int, ...]:
-        """Lengths of the time series in the residuals."""
+    kind: Kind
+    used_keys: tuple[str, ...] | None
+    points: int
+    nuisances: int
+    accuracy_is_stated: bool
+    series: tuple[int, ...]
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:
         """(Computed - measured)/standard deviation (n,) for each set of parameters; None if it cannot be computed."""

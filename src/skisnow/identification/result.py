@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -222,12 +222,7 @@ def identification_dict(identification: Identification, *, files: Iterable[Path]
         "accuracy_is_stated": identification.accuracy_is_stated,
         "noise": [json_number(noise) for noise in identification.noise],
         "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in identification.fits],
-        "effort": {
-            "simulations": identification.effort.simulations,
-            "kept_simulations": identification.effort.kept_simulations,
-            "rounds": identification.effort.rounds,
-            "wall_s": identification.effort.wall_s,
-        },
+        "effort": asdict(identification.effort),
         "provenance": {
             "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
             "skisnow": version("skisnow"),
@@ -237,27 +232,14 @@ def identification_dict(identification: Identification, *, files: Iterable[Path]
 
 
 def _parameter_dict(identified: Identified) -> dict[str, Any]:
-    parameter = identified.parameter
-    return {
-        "value": identified.value,
-        "interval": _interval_list(identified.interval),
-        "standard_error": identified.standard_error,
-        "profile_interval": _interval_list(identified.profile_interval),
-        "bootstrap_interval": _interval_list(identified.bootstrap_interval),
-        "posterior_interval": _interval_list(identified.posterior_interval),
-        "unit": parameter.unit,
-        "start": parameter.start,
-        "lower": parameter.lower,
-        "upper": parameter.upper,
-        "prior_mean": parameter.prior_mean,
-        "prior_sd": parameter.prior_sd,
-        "at_bound": identified.at_bound,
-        "identifiable": identified.identifiable,
-    }
-
-
-def _interval_list(interval: Interval | None) -> list[float | None] | None:
-    return None if interval is None else list(interval)
+    estimates = ("value", "interval", "standard_error", "profile_interval", "bootstrap_interval", "posterior_interval")
+    given = ("unit", "start", "lower", "upper", "prior_mean", "prior_sd")
+    entries = (
+        {name: getattr(identified, name) for name in estimates}
+        | {name: getattr(identified.parameter, name) for name in given}
+        | {"at_bound": identified.at_bound, "identifiable": identified.identifiable}
+    )
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in entries.items()}
 
 
 def _rms(fit: Fit) -> dict[str, float | None]:

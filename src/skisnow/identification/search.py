@@ -151,7 +151,7 @@ class Search:
         """Take steps until they converge, gain nothing or are `most_rounds`; the final state."""
         damping = _FIRST_DAMPING
         while here.rounds <= self.options.most_rounds:
-            step = self._full_step(here)
+            step = self._step(here)
             left = self._in_noise(here, step)
             ends = left <= self.options.tolerance or np.max(np.abs(step), initial=0.0) <= self.options.smallest_move
             near_minimum = self.options.renews and (
@@ -264,13 +264,10 @@ class Search:
         noise = self.noise(state)
         return float(np.linalg.norm(state.jacobian @ step)) / noise if noise > 0.0 else 0.0
 
-    def _full_step(self, state: SearchState) -> FloatArray:
-        """Step with the smallest damping, inside the bounds and no longer than `longest_move`."""
-        return self._step(state, self.options.damping)
-
-    def _step(self, state: SearchState, damping: float) -> FloatArray:
-        """Damped step inside the bounds and no longer than `longest_move`."""
+    def _step(self, state: SearchState, damping: float | None = None) -> FloatArray:
+        """Step inside the bounds and no longer than `longest_move` (default: with the smallest damping)."""
         assert state.jacobian is not None
+        damping = self.options.damping if damping is None else damping
         low = np.maximum(self.lower - state.place, -self.options.longest_move)
         high = np.minimum(self.upper - state.place, self.options.longest_move)
         return step_inside(state.jacobian, state.residuals, low, high, damping=damping)
@@ -310,7 +307,7 @@ class Search:
             return sizes
         if low < high:
             sizes = np.clip(self.noise(before) / _lengths(before.jacobian), low, high)
-        return np.copysign(sizes, self._full_step(before))
+        return np.copysign(sizes, self._step(before))
 
 
 def _with_secant(jacobian: FloatArray, step: FloatArray, change: FloatArray) -> FloatArray:

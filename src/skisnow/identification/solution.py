@@ -4,27 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 from scipy.stats import chi2
 
 from .._support.arrays import FloatArray
 from .._support.messages import Message
-from .parameter import Parameter, bounds_of
+from .parameter import bounds_of
 from .problem import Problem
-from .result import REASONS, Effort, Identification, Identified, Interval, Outcome
-from .search import SearchOptions, SearchState
-from .uncertainty import (
-    Uncertainty,
-    bound_warnings,
-    correlation_warnings,
-    few_points_warning,
-    linear_uncertainty,
-    model_warning,
-    noise_warning,
-    unknown_warnings,
-)
+from .result import REASONS, Effort, Identification, Identified, Outcome
+from .search import Progress, SearchOptions, SearchState
+from .uncertainty import Uncertainty, correlation_warnings, linear_uncertainty, unknown_warnings
+
+BootstrapBy: TypeAlias = Literal["refit", "linear"]
 
 BOUND_DISTANCE: Final = 1e-6
 """Distance (sizes) from a bound that counts as on it."""
@@ -32,6 +25,29 @@ NOISE_MISMATCH_PROBABILITY: Final = 1e-3
 """Probability of the residuals, given the stated accuracy, below which the intervals are widened."""
 REPORTED_CORRELATION: Final = 0.3
 """Smallest reported correlation of neighbouring residuals; it must also exceed three standard errors."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchRequest:
+    """Options of an identification; see `identify`.
+
+    starts: number of searches.
+    profile, bootstrap, posterior: requested intervals, with the numbers of resamples and samples.
+    bootstrap_by: method of the bootstrap.
+    progress: called with the current step.
+    warnings, methods: warnings and sentences on methods from before the search.
+    """
+
+    title: str
+    starts: int
+    profile: bool
+    bootstrap: int
+    posterior: int
+    rng: np.random.Generator
+    progress: Progress
+    bootstrap_by: BootstrapBy = "refit"
+    warnings: tuple[str, ...] = ()
+    methods: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,10 +95,8 @@ class Solution:
         return linear_uncertainty(self.optimum.jacobian / self.widening, degrees_of_freedom=dof)
 
 
-def build_identification(
-    solution: Solution, title: str, warnings: tuple[str, ...], methods: tuple[str, ...]
-) -> Identification:
-    """Build the result from a solution, with further warnings and methods."""
+def build_identification(solution: Solution, plan: SearchRequest) -> Identification:
+    """Build the result from a solution, with the warnings and methods from before the search."""
     problem, optimum = solution.problem, solution.optimum
     values = problem.values(optimum.place)
     uncertainty = solution.uncertainty()
@@ -98,7 +112,7 @@ def build_identification(
     return Identification(
         outcome=outcome,
         reason=REASONS[outcome],
-        scenario=title,
+        scenario=plan.title,
         parameters=tuple(_identified_parameters(solution, uncertainty)),
         correlation=np.full((p, p), np.nan) if uncertainty is None else uncertainty.correlation,
         covariance=covariance,
@@ -107,18 +121,18 @@ def build_identification(
         points=problem.points,
         degrees_of_freedom=solution.degrees_of_freedom,
         warnings=(
-            *warnings,
+            *plan.warnings,
             *_result_warnings(solution, uncertainty),
             *(warning for observation in observed for warning in observation.warnings(values)),
         ),
-        methods=(*methods, *solution.methods, *_interval_methods(solution)),
+        methods=(*plan.methods, *solution.methods, *_interval_methods(solution)),
         fits=tuple(fit for observation in observed for fit in observation.fits(values)),
         starts=solution.tried,
         effort=Effort(rounds=optimum.rounds),
     )
 
 
-def too_few_points(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identification:
+def too_few_points(problem: Problem, plan: SearchRequest) -> Identification:
     """Result without estimates: fewer points than free parameters."""
     p = len(problem.parameters)
     needed = p + problem.nuisances + (not problem.accuracy_is_stated)
@@ -131,22 +145,15 @@ def too_few_points(problem: Problem, title: str, warnings: tuple[str, ...]) -> I
     return Identification(
         outcome="too_few_points",
         reason=REASONS["too_few_points"],
-        scenario=title,
+        scenario=plan.title,
         parameters=tuple(Identified(parameter=parameter, identifiable=False) for parameter in problem.parameters),
         correlation=np.full((p, p), np.nan),
         covariance=np.full((p, p), np.nan),
         accuracy_is_stated=problem.accuracy_is_stated,
         points=problem.points,
         degrees_of_freedom=problem.points - p - problem.nuisances,
-        warnings=(*warnings, warning),
+        warnings=(*plan.warnings, warning),
     )
-
-
-def interval_around(parameter: Parameter, place: float, half: float) -> Interval:
-    """Interval of half-width `half` (sizes) around a place of the search, as values clipped to the bounds."""
-    lower, upper = bounds_of((parameter,))
-    ends = np.clip([place - half, place + half], lower[0], upper[0])
-    return parameter.value(float(ends[0])), parameter.value(float(ends[1]))
 
 
 def _outcome_of(state: SearchState, spread: Uncertainty | None) -> Outcome:
@@ -167,35 +174,55 @@ def _identified_parameters(solution: Solution, spread: Uncertainty | None) -> It
         if error is None or spread is None or not np.isfinite(error):
             yield Identified(parameter=parameter, value=value, at_bound=at_bound, identifiable=spread is None)
             continue
+        half = spread.factor * error
+        low, high = np.clip([place[j] - half, place[j] + half], lower[j], upper[j]).tolist()
         yield Identified(
             parameter=parameter,
             value=value,
             standard_error=error * parameter.slope(value),
-            interval=interval_around(parameter, float(place[j]), spread.factor * error),
+            interval=(parameter.value(low), parameter.value(high)),
             at_bound=at_bound,
             identifiable=not bool(spread.unknown[j]),
         )
 
 
 def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator[str]:
-    parameters = solution.problem.parameters
-    few = few_points_warning(solution.problem.points, len(parameters))
-    if few:
-        yield few
+    parameters, points = solution.problem.parameters, solution.problem.points
+    if points < max(10, 3 * len(parameters)):
+        yield Message(
+            "{points} points for {parameters} parameters are few: one bad point decides, and how well the model fits "
+            "cannot be seen. Ten or more are worth having",
+            points=points,
+            parameters=len(parameters),
+        )
     if spread is not None:
         yield from unknown_warnings(parameters, spread)
         yield from correlation_warnings(parameters, spread.correlation)
-    yield from bound_warnings(
-        parameters, [identified.at_bound for identified in _identified_parameters(solution, spread)]
-    )
+    for identified in _identified_parameters(solution, spread):
+        if identified.at_bound:
+            bounded = identified.parameter
+            unit = f" {bounded.unit}" if bounded.unit else ""
+            yield (
+                f"{bounded.name} sits on its bound ({bounded.lower:g} to {bounded.upper:g}{unit}): its interval by "
+                "curvature does not hold there; --profile gives one that does"
+            )
     if solution.optimum.state == "interrupted":
         yield "the search had not ended: intervals and correlations are those of a place on the way"
         return
     if solution.widening > 1.0:
-        yield noise_warning(solution.widening)
+        yield Message(
+            "the residuals are {ratio:.2g} times the stated accuracy of the data: the accuracy is too optimistic, or "
+            "the model is incomplete. Intervals are widened by that factor",
+            ratio=solution.widening,
+        )
     correlation = _neighbour_correlation(solution)
     if correlation is not None:
-        yield model_warning(correlation)
+        yield Message(
+            "neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the "
+            "noise wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of "
+            "residuals",
+            correlation=correlation,
+        )
     yield from _multistart_warnings(solution)
 
 

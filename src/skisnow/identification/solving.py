@@ -11,12 +11,12 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import FitError, require_range
 from .._support.messages import Message, template
-from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
+from .intervals import add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
 from .parameter import bounds_of
 from .problem import Problem
 from .result import Identification
-from .search import CLOSED_FORM_SEARCH, Progress, Search, SearchOptions, SearchState
-from .solution import Solution, build_identification
+from .search import CLOSED_FORM_SEARCH, Search, SearchOptions, SearchState
+from .solution import SearchRequest, Solution, build_identification
 
 GROOVE_SEARCH: Final = replace(
     CLOSED_FORM_SEARCH,
@@ -38,60 +38,24 @@ _STEPS_APART: Final = 3.0
 """The search is repeated with the scenario's solver if it changes the residuals by more standard deviations (rms)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SearchRequest:
-    """Options of an identification; see `identify`.
-
-    starts: number of searches.
-    profile, bootstrap, posterior: requested intervals, with the numbers of resamples and samples.
-    bootstrap_by: method of the bootstrap.
-    progress: called with the current step.
-    warnings, methods: warnings and sentences on methods from before the search.
-    """
-
-    title: str
-    starts: int
-    profile: bool
-    bootstrap: int
-    posterior: int
-    rng: np.random.Generator
-    progress: Progress
-    bootstrap_by: BootstrapBy = "refit"
-    warnings: tuple[str, ...] = ()
-    methods: tuple[str, ...] = ()
-
-
 def solve(problem: Problem, plan: SearchRequest) -> Identification:
     """Search from every start and compute the result at the best place."""
     require_range("starts", plan.starts, 1)
-    solution = solution_of(problem, plan)
-    return add_requested_intervals(
-        build_identification(solution, plan.title, plan.warnings, plan.methods), solution, plan
-    )
-
-
-def add_requested_intervals(identification: Identification, solution: Solution, plan: SearchRequest) -> Identification:
-    """Add profile, bootstrap and posterior intervals if requested; Ctrl-C keeps those that are complete."""
+    solution = Solver(problem, plan).solution()
+    identification = build_identification(solution, plan)
     if identification.outcome == "interrupted":
         return identification
-    try:
+    try:  # Ctrl-C keeps the further intervals that are complete
         if plan.profile:
-            identification = add_profile_intervals(identification, solution, plan.progress)
+            identification = add_profile_intervals(identification, solution, plan)
         if plan.bootstrap:
-            identification = add_bootstrap_intervals(
-                identification, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.progress
-            )
+            identification = add_bootstrap_intervals(identification, solution, plan)
         if plan.posterior:
-            identification = add_posterior_intervals(identification, solution, plan.posterior, plan.rng, plan.progress)
+            identification = add_posterior_intervals(identification, solution, plan)
     except KeyboardInterrupt:
         warning = "The requested further intervals were interrupted; values and intervals by curvature are complete"
         return replace(identification, outcome="interrupted", warnings=(*identification.warnings, warning))
     return identification
-
-
-def solution_of(problem: Problem, plan: SearchRequest) -> Solution:
-    """The best place, with derivatives in standard deviations of the data."""
-    return _Solver(problem, plan).solution()
 
 
 def search_options(problem: Problem, plan: SearchRequest) -> SearchOptions:
@@ -103,7 +67,7 @@ def search_options(problem: Problem, plan: SearchRequest) -> SearchOptions:
 
 
 @dataclass(slots=True)
-class _Solver:
+class Solver:
     """Solves one problem; `tried` and `methods` record the starts and how the solution was computed."""
 
     problem: Problem
@@ -112,6 +76,7 @@ class _Solver:
     methods: list[str] = field(default_factory=list)
 
     def solution(self) -> Solution:
+        """The best place, with derivatives in standard deviations of the data."""
         best = self._search_best_start()
         if best.state != "interrupted":
             best = self._with_noise(best)

@@ -79,18 +79,13 @@ def track_points(track: Track) -> TrackPoints:
     sd = stated_sd if stated and stated_sd is not None else np.full_like(place, estimated_noise(time, place))
     speed, speed_sd = np.full(len(time), np.nan), np.full(len(time), np.nan)
     if stated and track.speed_sd is not None:
-        path_speeds = path_speed(track)[use]
+        over_ground = track.velocity is None and "over the ground" in track.speed_kind
+        along_path = track.speed if track.velocity is None else np.linalg.norm(track.velocity, axis=1)
+        path_speeds = np.full(len(time), np.nan) if over_ground else along_path[use]
         usable_speed = np.isfinite(path_speeds) & (track.speed_sd[use] > 0.0)
         speed[usable_speed], speed_sd[usable_speed] = path_speeds[usable_speed], track.speed_sd[use][usable_speed]
     inexact = None if track.solution is None else inexact_sentence(track.name, track.solution[use])
     return TrackPoints(track.name, time, place, sd, speed, speed_sd, stated, int(np.sum(~use)), inexact)
-
-
-def path_speed(track: Track) -> FloatArray:
-    """Speed along the path (n,) in m/s; NaN if only the speed over the ground was recorded."""
-    if track.velocity is not None:
-        return np.asarray(np.linalg.norm(track.velocity, axis=1))
-    return np.full(len(track), np.nan) if "over the ground" in track.speed_kind else track.speed
 
 
 def estimated_noise(time: FloatArray, place: FloatArray) -> float:
@@ -138,67 +133,40 @@ class TrackPositions:
     fixed: Mapping[str, float] = field(default_factory=dict)
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     scenario_values: Mapping[str, float] = field(default_factory=dict)
+    kind: Kind = field(default="track", init=False)
+    used_keys: tuple[str, ...] | None = field(default=None, init=False)
+    points: int = field(init=False)
+    nuisances: int = field(default=0, init=False)
+    accuracy_is_stated: bool = field(init=False)
+    series: tuple[int, ...] = field(init=False)
 
-    @property
-    def kind(self) -> Kind:
-        """Kind of the data: tracks."""
-        return "track"
-
-    @property
-    def runs(self) -> tuple[str, ...]:
-        """Names of the tracks."""
-        return tuple(track.name for track in self.tracks)
-
-    def depends_on(self, key: str) -> bool:  # noqa: ARG002 - a run depends on every key
-        """True: a run depends on every key."""
-        return True
-
-    @property
-    def points(self) -> int:
-        """Number of measured places."""
-        return sum(len(track.time) for track in self.tracks)
-
-    @property
-    def nuisances(self) -> int:
-        """None."""
-        return 0
-
-    @property
-    def accuracy_is_stated(self) -> bool:
-        """True if all tracks state their accuracy."""
-        return all(track.stated for track in self.tracks)
-
-    @property
-    def series(self) -> tuple[int, ...]:
-        """Numbers of x, y and speeds of each track."""
-        return tuple(
-            length
-            for track in self.tracks
-            for length in (len(track.time), len(track.time), int(np.sum(np.isfinite(track.speed))))
-            if length
-        )
+    def __post_init__(self) -> None:
+        self.points = sum(len(track.time) for track in self.tracks)
+        self.accuracy_is_stated = all(track.stated for track in self.tracks)
+        # x, y and speeds of each track
+        of_tracks = ((track.time, track.time, track.speed[np.isfinite(track.speed)]) for track in self.tracks)
+        self.series = tuple(len(values) for columns in of_tracks for values in columns if len(values))
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:
         """Residuals of the fast runs of a search, or of runs with the scenario's solver."""
         tasks = [self._run_tasks(values, final=final) for values in many]
         rows = iter(self.simulate([task for batch in tasks for task in batch]))
-        return [_join_all([_track_residuals(track, next(rows)) for track in self.tracks]) for _ in many]
+        parts = [[_track_residuals(track, next(rows)) for track in self.tracks] for _ in many]
+        computed = [[part for part in of_set if part is not None] for of_set in parts]
+        return [np.concatenate(of_set) if len(of_set) == len(self.tracks) else None for of_set in computed]
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Measured and simulated x, y and speed over time."""
-        fits = []
-        for track, row in zip(self.tracks, self.simulate(self._run_tasks(values, final=True)), strict=True):
-            if "x_m" not in row:
-                continue
-            fitted = np.column_stack([row["x_m"], row["y_m"], row["speed_m_per_s"]])
-            fits.append(
-                Fit(
-                    name=track.name, kind="track", along=track.time, labels=("x (m)", "y (m)", "speed (m/s)"),
-                    measured=np.column_stack([track.place, track.speed]), fitted=fitted,
-                    sd=np.column_stack([track.sd, track.speed_sd]),
-                )
-            )  # fmt: skip
-        return tuple(fits)
+        rows = self.simulate(self._run_tasks(values, final=True))
+        return tuple(
+            Fit(
+                name=track.name, kind="track", along=track.time, labels=("x (m)", "y (m)", "speed (m/s)"),
+                measured=np.column_stack([track.place, track.speed]),
+                fitted=np.column_stack([row["x_m"], row["y_m"], row["speed_m_per_s"]]),
+                sd=np.column_stack([track.sd, track.speed_sd]),
+            )
+            for track, row in zip(self.tracks, rows, strict=True) if "x_m" in row
+        )  # fmt: skip
 
     def warnings(self, values: Values) -> tuple[str, ...]:
         """Warnings: unused points, a run that ends early, outliers, a run near the limit of grip."""
@@ -230,11 +198,6 @@ class TrackPositions:
             RunTask({**self.fixed, **self.starts.get(track.name, {}), **run_values(values, track.name)}, i, final)
             for i, track in enumerate(self.tracks)
         ]
-
-
-def _join_all(parts: Sequence[FloatArray | None]) -> FloatArray | None:
-    available = [part for part in parts if part is not None]
-    return np.concatenate(available) if len(available) == len(parts) else None
 
 
 def _track_residuals(track: TrackPoints, row: Row) -> FloatArray | None:

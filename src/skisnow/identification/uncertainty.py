@@ -194,47 +194,6 @@ def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> It
             )
 
 
-def bound_warnings(parameters: Sequence[Parameter], at_bound: Sequence[bool]) -> Iterator[str]:
-    """Warning of each parameter on a bound."""
-    for parameter, there in zip(parameters, at_bound, strict=True):
-        if there:
-            unit = f" {parameter.unit}" if parameter.unit else ""
-            yield (
-                f"{parameter.name} sits on its bound ({parameter.lower:g} to {parameter.upper:g}{unit}): its interval "
-                "by curvature does not hold there; --profile gives one that does"
-            )
-
-
-def few_points_warning(points: int, parameters: int) -> str | None:
-    """Warning of too few points for a reliable fit."""
-    if points >= max(10, 3 * parameters):
-        return None
-    return Message(
-        "{points} points for {parameters} parameters are few: one bad point decides, and how well the model fits "
-        "cannot be seen. Ten or more are worth having",
-        points=points,
-        parameters=parameters,
-    )
-
-
-def noise_warning(ratio: float) -> str:
-    """Warning of residuals that are larger than the stated accuracy allows."""
-    return Message(
-        "the residuals are {ratio:.2g} times the stated accuracy of the data: the accuracy is too optimistic, or the "
-        "model is incomplete. Intervals are widened by that factor",
-        ratio=ratio,
-    )
-
-
-def model_warning(correlation: float) -> str:
-    """Warning of correlated residuals."""
-    return Message(
-        "neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
-        "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals",
-        correlation=correlation,
-    )
-
-
 def _why_open(parameters: Sequence[Parameter], spread: Uncertainty, j: int) -> str:
     """Reason why parameter j is not determined, and a remedy."""
     if spread.factor * spread.alone[j] > WIDEST_HALF_INTERVAL:  # not even with all others known
