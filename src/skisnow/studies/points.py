@@ -19,7 +19,7 @@ from ..parameters import Allowed, Quantity, build_declared, checked_table
 Point: TypeAlias = dict[str, Any]
 
 MOST_POINTS: Final = 1_000_000
-"""Of one study: a table of about half a gigabyte on disk; memory does not grow with it."""
+"""Of one study: a table of about half a gigabyte on disk."""
 
 
 class LazySequence(Sequence[Point], ABC):

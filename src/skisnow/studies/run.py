@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import hashlib
 import platform
-import tempfile
-from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 from .._support.errors import OutputError, ParameterError, SkisnowError
 from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, worker_count
-from .._support.processes.kept_rows import KeptRows, Row, json_text
+from .._support.processes.kept_rows import KeptRows, json_text
 from .._support.staging import cannot_write
 from .._support.user_files import is_file
 from ..parameters import Quantity
 from .points import Point
+from .rows import TableRows
 from .study import Study, StudyModel, read_study
-from .table import FAILED, MOST_ROWS_HELD, StudyTable, Tally, large_csv, read_table, stored_rows
-from .writing import write_csv, write_table, writer_of
+from .table import StudyTable, Tally, read_table
+from .writing import write_table, writer_of
 
 
 class StudyState(Enum):
@@ -124,7 +123,7 @@ def run_study(
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
         previous = study.place_for_previous() if state is StudyState.ANOTHER else None
-        study_table = write_rows(study.out, finished_rows, fingerprint, study.subject.keys, previous=previous)
+        study_table = write_rows(study.out, study.columns, finished_rows.values(), fingerprint, previous=previous)
         finished_rows.remove()
     finally:
         finished_rows.close()
@@ -138,74 +137,24 @@ def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptR
     return KeptRows.opened(path, fingerprint, columns=study.columns[:-1], about=about)
 
 
-class FinishedRows(Protocol):
-    """The rows of all points of a study."""
-
-    columns: tuple[str, ...] | None
-
-    def __len__(self) -> int:
-        """Number of rows."""
-        ...
-
-    def values(self) -> Iterator[list[Any]]:
-        """The values of the columns of each."""
-        ...
-
-
 def write_rows(
-    out: Path,
-    finished_rows: FinishedRows,
-    fingerprint: str,
-    keys: Mapping[str, Quantity],
-    *,
-    previous: Path | None = None,
+    out: Path, columns: Sequence[str], values: Iterable[Sequence[Any]], fingerprint: str, *, previous: Path | None
 ) -> StudyTable:
     """Write the table of all rows and return it; it is not written if no point could be computed.
 
-    fingerprint: for the column `study`.
+    columns, values: columns of the table, and the values of each row without the last one, the fingerprint.
     previous: where a table in its place goes; None: no table is there.
     """
-    columns = (*(finished_rows.columns or ()), "study")
-    rows = _Rows(finished_rows, columns, fingerprint)
-    stored = None
-    if any(row[columns.index("outcome")] != FAILED for row in finished_rows.values()):
+    rows = TableRows(columns, ((*row, fingerprint) for row in values))
+    tally = Tally.of(rows)
+    if tally.failed < len(rows):
         if previous is not None:
             try:
                 out.rename(previous)
             except OSError as error:
                 raise cannot_write(previous, error) from error
-        begins = write_table(out, columns, rows)
-        stored = None if rows.held is not None else stored_rows(out, keys, begins)
-    elif len(finished_rows) > MOST_ROWS_HELD:
-        file = tempfile.TemporaryFile()  # noqa: SIM115 - the rows close it
-        begins = write_csv(file, columns, rows())
-        file.seek(0)
-        stored = large_csv(out, file, keys, begins)
-    else:
-        deque(rows(), maxlen=0)
-    study_rows = stored[1] if stored is not None else rows.held or []
-    return StudyTable(columns, study_rows, (), rows.counted)
-
-
-class _Rows:
-    """Rows as lists of values, which can be read repeatedly; each pass counts them, and stores them if they are few."""
-
-    def __init__(self, finished_rows: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
-        self._kept, self._columns, self._fingerprint = finished_rows, columns, fingerprint
-        self.counted = Tally()
-        self.held: list[Row] | None = None
-
-    def __call__(self) -> Iterator[list[Any]]:
-        self.counted = Tally()
-        self.held = [] if len(self._kept) <= MOST_ROWS_HELD else None
-        return self.counted.counting(self._columns, self._values_to_store())
-
-    def _values_to_store(self) -> Iterator[list[Any]]:
-        for values in self._kept.values():
-            row = [*values, self._fingerprint]
-            if self.held is not None:
-                self.held.append(dict(zip(self._columns, row, strict=True)))
-            yield row
+        write_table(out, rows)
+    return StudyTable(rows.columns, rows, (), tally)
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import heapq
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 from .._support.errors import ParameterError
 from .._support.messages import template
@@ -124,16 +124,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
         for place in dict.fromkeys(places):
             shard_rows.append(KeptRows.read(place))
             opened.callback(shard_rows[-1].close)
-        return _merge_parts(out, _Parts(shard_rows))
-
-
-def _merge_parts(out: Path, parts: _Parts) -> StudyTable:
-    parts.require_whole()
-    state, table = table_state(out, parts.keys, parts.fingerprint, parts.count)
-    if state is StudyState.FINISHED and table is not None:
-        return table
-    before = place_for_previous(out) if state is StudyState.ANOTHER else None
-    return write_rows(out, parts, parts.fingerprint, parts.keys, previous=before)
+        return _merge_parts(out, shard_rows)
 
 
 _OF_ANOTHER_STUDY: Final = template("{path} is a part of another study than {other}. Remove one of them")
@@ -142,64 +133,50 @@ _OF_ANOTHER_CORE: Final = template(
 )
 
 
-class _Parts:
-    """The rows of all parts, as if they were kept in one file."""
+def _merge_parts(out: Path, parts: Sequence[KeptRows]) -> StudyTable:
+    about = [part.about() for part in parts]
+    for name, text in (("fingerprint", _OF_ANOTHER_STUDY), ("core", _OF_ANOTHER_CORE)):
+        for part, entries in zip(parts, about, strict=True):
+            if entries.get(name) != about[0].get(name):
+                raise ParameterError(text).tag("another_study", path=part.path, other=parts[0].path)
+    columns = parts[0].columns
+    if "points" not in about[0] or columns is None:
+        raise ParameterError("{path} is not a part of a study. Name the files that --shard left").tag(
+            "unknown_name", path=parts[0].path
+        )
+    fingerprint, count = about[0]["fingerprint"], int(about[0]["points"])
+    _require_whole(parts, count)
+    keys = {name: Quantity(name, "", kind=kind) for name, kind in own_json(about[0]["kinds"]).items()}
+    state, table = table_state(out, keys, fingerprint, count)
+    if state is StudyState.FINISHED and table is not None:
+        return table
+    previous = place_for_previous(out) if state is StudyState.ANOTHER else None
+    values = (own_json(text) for text in _merged_rows(parts))
+    return write_rows(out, (*columns, "study"), values, fingerprint, previous=previous)
 
-    def __init__(self, parts: Sequence[KeptRows]) -> None:
-        self._parts = parts
-        about = [part.about() for part in parts]
-        for name, text in (("fingerprint", _OF_ANOTHER_STUDY), ("core", _OF_ANOTHER_CORE)):
-            odd = next(
-                (part for part, entries in zip(parts, about, strict=True) if entries.get(name) != about[0].get(name)),
-                None,
+
+def _merged_rows(parts: Sequence[KeptRows]) -> Iterator[str]:
+    """Rows of the points as they are kept, in rising order, each once."""
+    last: NumberedText | None = None
+    for text in heapq.merge(*(part.texts() for part in parts)):
+        if last is None or text[0] != last[0]:
+            yield text[1]
+        elif text[1] != last[1]:
+            raise ParameterError("two parts have different rows for point {each}. Compute one of them again").tag(
+                "contradiction", each=text[0] + 1
             )
-            if odd is not None:
-                raise ParameterError(text).tag("another_study", path=odd.path, other=parts[0].path)
-        if "points" not in about[0] or parts[0].columns is None:
-            raise ParameterError("{path} is not a part of a study. Name the files that --shard left").tag(
-                "unknown_name", path=parts[0].path
-            )
-        self.columns: tuple[str, ...] | None = parts[0].columns
-        self.fingerprint = about[0]["fingerprint"]
-        self.count = int(about[0]["points"])
-        self._kinds = own_json(about[0]["kinds"])
+        last = text
 
-    @property
-    def keys(self) -> Mapping[str, Quantity]:
-        """The study's inputs, as far as a table needs them."""
-        return {name: Quantity(name, "", kind=kind) for name, kind in self._kinds.items()}
 
-    def __len__(self) -> int:
-        """Number of points of the study."""
-        return self.count
-
-    def texts(self) -> Iterator[NumberedText]:
-        """Points with their rows as they are kept, in rising order, each once."""
-        last: NumberedText | None = None
-        for text in heapq.merge(*(part.texts() for part in self._parts)):
-            if last is None or text[0] != last[0]:
-                yield text
-            elif text[1] != last[1]:
-                raise ParameterError("two parts have different rows for point {each}. Compute one of them again").tag(
-                    "contradiction", each=text[0] + 1
-                )
-            last = text
-
-    def values(self) -> Iterator[list[Any]]:
-        """The values of the columns of every point."""
-        return (own_json(text) for _, text in self.texts())
-
-    def require_whole(self) -> None:
-        """Refuse parts in which points are missing."""
-        numbers_seen = bytearray(self.count)
-        for part in self._parts:
-            for number in part.numbers():
-                if 0 <= number < self.count:  # all others are rejected with their row
-                    numbers_seen[number] = True
-        missing = numbers_seen.count(0)
-        if missing:
-            first = numbers_seen.index(0)
-            raise ParameterError(
-                "{missing} of {count} points are in none of the parts, the first is point {first}. Compute or name "
-                "the missing parts"
-            ).tag("missing", missing=missing, count=self.count, first=first + 1)
+def _require_whole(parts: Sequence[KeptRows], count: int) -> None:
+    """Refuse parts in which points are missing."""
+    is_there = bytearray(count)
+    for part in parts:
+        for number in part.numbers():
+            if 0 <= number < count:  # all others are rejected with their row
+                is_there[number] = True
+    if missing := is_there.count(0):
+        raise ParameterError(
+            "{missing} of {count} points are in none of the parts, the first is point {first}. Compute or name the "
+            "missing parts"
+        ).tag("missing", missing=missing, count=count, first=is_there.index(0) + 1)

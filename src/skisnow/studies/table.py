@@ -1,10 +1,10 @@
-"""The table of a study, one row for each point, and the counts of its outcomes."""
+"""The table of a study, one row for each point, its readers, and the counts of its outcomes."""
 
 from __future__ import annotations
 
 import csv
 import io
-from array import array
+import sqlite3
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,23 +17,20 @@ from .._support.processes.kept_rows import Row
 from .._support.spreadsheet_text import (
     SEPARATOR_NAMES,
     NoTextError,
+    csv_text,
     decimal_mark,
     decoded,
     most_frequent_separator,
     named_separator,
 )
+from .._support.sqlite_file import connect, first_damage, place_reason, require_schema, require_sound_pages
 from .._support.units import Facts, Shown
-from .._support.user_files import plain_bytes
+from .._support.user_files import is_file, own_json, plain_bytes
 from ..parameters import Quantity
-from .rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, ParquetRows, StoredRows, csv_block, readers, row_of
-from .writing import write_csv
+from .rows import ROWS_OF_A_BLOCK, TableRows, cell, is_text, read_cells, readers, require_kinds, require_pyarrow
 
-MOST_ROWS_HELD: Final = 20_000
-"""A table of more stays in its file, and rows are read as they are used (8 kB each in memory)."""
-MOST_BYTES_HELD: Final = 1 << 24
 MOST_BYTES_AT_ONCE: Final = 1 << 27
-"""Largest table of another program, which is read as a whole (bytes)."""
-"""Size of a CSV file; a larger one is not read at once."""
+"""Size of a CSV file; a larger one must be as skisnow writes it and is read line by line."""
 _HEAD: Final = 1 << 16
 FAILED = "error"
 """The outcome of a point that could not be asked."""
@@ -48,7 +45,7 @@ class StudyTable(Shown):
     columns
         The names, inputs first.
     rows
-        Numbers, texts and switches. Of a table of more than 20,000 rows they are read from its file as they are used.
+        Numbers, texts and switches.
     varied
         The inputs that vary.
     counted
@@ -75,9 +72,7 @@ class StudyTable(Shown):
 
     def csv(self) -> str:
         """The table as text: numbers with all their digits, true and false, nothing if the value is missing."""
-        stream = io.BytesIO()
-        write_csv(stream, self.columns, ([row.get(name) for name in self.columns] for row in self.rows))
-        return stream.getvalue().decode("utf-8")
+        return csv_text(chain([self.columns], ([cell(row.get(name)) for name in self.columns] for row in self.rows)))
 
     def counts(self) -> dict[str, int]:
         """Number of rows with each outcome, the most frequent first."""
@@ -97,114 +92,108 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
     Raises ParameterError: it cannot be read, or is not a study's table.
     """
     path = Path(path)
-    stored = stored_rows(path, keys)
-    if stored is None:
-        return StudyTable(*_read_at_once(path, keys), tuple(varied))
-    columns, rows = stored
-    _require_columns(path, columns)
-    counted = Tally.of(rows)
-    held = rows if len(rows) > MOST_ROWS_HELD else list(rows)
-    return StudyTable(columns, held, tuple(varied), counted)
+    read = {".sqlite": _read_database, ".parquet": _read_parquet}.get(path.suffix.lower(), _read_csv)
+    rows = read(path, keys)
+    return StudyTable(rows.columns, rows, tuple(varied), Tally.of(rows))
 
 
-def stored_rows(
-    path: Path, keys: Mapping[str, Quantity], begins: array[int] | None = None
-) -> tuple[tuple[str, ...], StoredRows] | None:
-    """Columns and rows that are read as they are used; None of a small CSV file, and of one of another program."""
-    ending = path.suffix.lower()
-    if ending in (".sqlite", ".parquet"):
-        rows = DatabaseRows(path, keys) if ending == ".sqlite" else ParquetRows(path, keys)
-        return rows.columns, rows
+def _read_csv(path: Path, keys: Mapping[str, Quantity]) -> TableRows:
     try:
-        if begins is None and path.stat().st_size <= MOST_BYTES_HELD:
-            return None
-        file = path.open("rb")
+        file, separator, skipped = _open_csv(path)
+        with file:
+            reader = csv.reader(file, delimiter=separator)
+            columns = tuple(next(reader, ()))
+            _require_columns(path, columns)
+            lines = ((reader.line_num + skipped, cells) for cells in reader if cells)
+            mark = "."
+            if separator != ",":
+                every = list(lines)
+                mark = decimal_mark([chain.from_iterable(row for _, row in every)], separator=";")
+                lines = (pair for pair in every)
+            cell_readers = readers(columns, keys, mark)
+            rows = (read_cells(f"{path}, line {line}", columns, cells, cell_readers) for line, cells in lines)
+            return TableRows(columns, rows)
     except OSError as error:
-        raise _unreadable_error(path, error) from error
-    return large_csv(path, file, keys, begins)
-
-
-def large_csv(
-    path: Path, file: IO[bytes], keys: Mapping[str, Quantity], begins: array[int] | None = None
-) -> tuple[tuple[str, ...], StoredRows] | None:
-    """Columns and rows of a CSV file as `write_csv` writes it; None of any other, which is closed.
-
-    file: open for reading.
-    begins: as `write_csv` returned it; None: searched for.
-    """
-    try:
-        rows = _large_csv(path, file, keys, begins)
-    except BaseException:
-        file.close()
-        raise
-    if rows is None:
-        file.close()
-    return rows
-
-
-def _large_csv(
-    path: Path, file: IO[bytes], keys: Mapping[str, Quantity], begins: array[int] | None
-) -> tuple[tuple[str, ...], StoredRows] | None:
-    try:
-        head = file.readline().decode("utf-8")
-        columns = tuple(next(csv.reader([head], strict=True)))
-    except (UnicodeDecodeError, csv.Error, StopIteration):
-        return None
-    if not {"outcome", "study"} <= set(columns) or "\ufeff" in head:
-        return None
-    begins = _begins(file) if begins is None else begins
-    cell_readers = readers(columns, keys, ".")
-    whole = max(len(begins) - 2, 0)
-    file.seek(begins[whole])
-    last = csv_block(path, file.read(), columns, cell_readers, whole * ROWS_OF_A_BLOCK)
-    count = whole * ROWS_OF_A_BLOCK + len(last)
-    return columns, CsvRows(path, file, columns, cell_readers, begins, count)
-
-
-def _begins(file: IO[bytes]) -> array[int]:
-    """Start of each block of rows from the current position, and end of the last one. A text may contain line ends."""
-    begins, place, rows, quotes = array("q", [file.tell()]), file.tell(), 0, 0
-    for line in file:
-        place += len(line)
-        quotes += line.count(b'"')
-        if quotes % 2 == 0:
-            rows += 1
-            if rows % ROWS_OF_A_BLOCK == 0:
-                begins.append(place)
-    if rows % ROWS_OF_A_BLOCK or quotes % 2:
-        begins.append(place)
-    return begins
-
-
-def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, ...], list[Row]]:
-    try:
-        text = decoded(plain_bytes(path, most_bytes=MOST_BYTES_AT_ONCE)).text
-        named = named_separator(text)
-        separator = named if named in SEPARATOR_NAMES else most_frequent_separator(text[:_HEAD])
-        stream = io.StringIO(text, newline="")
-        skipped = len(stream.readline()[:1]) if named in SEPARATOR_NAMES else 0
-        reader = csv.reader(stream, delimiter=str(separator))
-        columns = tuple(next(reader, ()))
-        _require_columns(path, columns)
-        lines = [(reader.line_num + skipped, cells) for cells in reader if cells]
-    except OSError as error:
-        raise _unreadable_error(path, error) from error
-    except (NoTextError, csv.Error) as error:
+        raise _table_error(path, error.strerror or error) from error
+    except (NoTextError, UnicodeDecodeError, csv.Error) as error:
         raise ParameterError("{path} is not a table of a study: {error}").tag(
             "unknown_name", path=path, error=error
         ) from error
-    mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
-    cell_readers = readers(columns, keys, mark)
-    return columns, [row_of(f"{path}, line {line}", columns, cells, cell_readers) for line, cells in lines]
 
 
-def _unreadable_error(path: Path, error: OSError) -> ParameterError:
-    return ParameterError("{path} cannot be read: {reason}").tag(
-        "cannot_read", path=path, reason=error.strerror or error
-    )
+def _open_csv(path: Path) -> tuple[IO[str], str, int]:
+    """Text of a CSV file, its separator, and the number of skipped lines; a large file is as skisnow writes it."""
+    if is_file(path) and path.stat().st_size > MOST_BYTES_AT_ONCE:
+        return path.open(encoding="utf-8", newline=""), ",", 0
+    text = decoded(plain_bytes(path, most_bytes=MOST_BYTES_AT_ONCE)).text
+    stream, named = io.StringIO(text, newline=""), named_separator(text)
+    if named in SEPARATOR_NAMES:
+        return stream, str(named), len(stream.readline()[:1])
+    return stream, most_frequent_separator(text[:_HEAD]), 0
 
 
-def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
+def _read_database(path: Path, keys: Mapping[str, Quantity]) -> TableRows:
+    """Rows of the table `study` of an SQLite file, in the order of their rowid."""
+    database: sqlite3.Connection | None = None
+    try:
+        database = connect(path, mode="ro")
+        require_schema(database, {"study": ("outcome", "study")})
+        require_sound_pages(database)
+        declared = database.execute("select name, type from pragma_table_info('study')").fetchall()
+        kinds = [kind for _, kind in declared]
+        records = database.execute("select * from study order by rowid")
+        rows = (list(map(_as_python, record, kinds)) for record in records)
+        return _checked_rows(path, tuple(name for name, _ in declared), rows, keys)
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
+        damage = None if database is None else first_damage(database)
+        raise _table_error(path, place_reason(error) or damage or error) from error
+    finally:
+        if database is not None:
+            database.close()
+
+
+def _as_python(value: Any, kind: str) -> Any:
+    """Python value of a cell of the database, by the declared type of its column."""
+    if kind == "BOOLEAN" and value in (0, 1):
+        return bool(value)
+    return own_json(value) if kind == "JSON" and isinstance(value, str) else value
+
+
+def _read_parquet(path: Path, keys: Mapping[str, Quantity]) -> TableRows:
+    parquet = require_pyarrow().parquet
+    try:
+        with parquet.ParquetFile(path) as file:
+            batches = file.iter_batches(batch_size=ROWS_OF_A_BLOCK)
+            rows = (list(row.values()) for batch in batches for row in batch.to_pylist())
+            return _checked_rows(path, tuple(file.schema_arrow.names), rows, keys)
+    except ParameterError:
+        raise
+    except (OSError, ValueError, TypeError, NotImplementedError, MemoryError) as error:  # and pyarrow's subclasses
+        raise _table_error(path, " ".join(str(error).split())) from error
+
+
+def _checked_rows(
+    path: Path, columns: tuple[str, ...], rows: Iterable[Sequence[Any]], keys: Mapping[str, Quantity]
+) -> TableRows:
+    """Rows whose values are of the kinds of their columns."""
+    _require_columns(path, columns)
+    texts = [is_text(name, keys) for name in columns]
+
+    def checked() -> Iterator[Sequence[Any]]:
+        for number, values in enumerate(rows, start=1):
+            require_kinds(f"{path}, row {number}", columns, values, texts)
+            yield values
+
+    return TableRows(columns, checked())
+
+
+def _table_error(path: Path, why: object) -> ParameterError:
+    return ParameterError(
+        "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again"
+    ).tag("cannot_read", path=path, reason=why)
+
+
+def _require_columns(path: Path, columns: Sequence[str]) -> None:
     if not {"outcome", "study"} <= set(columns):
         raise ParameterError("{path} is not a table of a study: its first line names no columns outcome and study").tag(
             "unknown_name", path=path
@@ -232,8 +221,14 @@ class Tally:
     def of(cls, rows: Iterable[Mapping[str, Any]]) -> Tally:
         """Tally of rows by names."""
         tally = cls()
-        for row in rows:
-            tally.take(row["outcome"], row.get("warnings"), row.get("reason"), row.get("study"))
+        for number, row in enumerate(rows, start=1):
+            tally.outcomes[str(row["outcome"])] += 1
+            tally.studies.add(row.get("study"))
+            if row["outcome"] == FAILED and tally.first_failed is None:
+                tally.first_failed = (number, str(row.get("reason")))
+            if warnings := row.get("warnings"):
+                tally.warned += 1
+                tally.first_warned = tally.first_warned or (number, warnings)
         return tally
 
     @property
@@ -249,22 +244,3 @@ class Tally:
     def counts(self) -> dict[str, int]:
         """Number of rows with each outcome, the most frequent first."""
         return dict(sorted(self.outcomes.items(), key=lambda pair: (-pair[1], pair)))
-
-    def take(self, outcome: Any, warnings: Any, reason: Any, study: Any) -> None:
-        """Count a row."""
-        self.outcomes[str(outcome)] += 1
-        if outcome == FAILED and self.first_failed is None:
-            self.first_failed = (self.rows, reason)
-        if warnings:
-            self.warned += 1
-            if self.first_warned is None:
-                self.first_warned = (self.rows, warnings)
-        self.studies.add(study)
-
-    def counting(self, columns: Sequence[str], rows: Iterable[list[Any]]) -> Iterator[list[Any]]:
-        """Rows as lists of the values of the columns, counted as they go by."""
-        places = [columns.index(name) if name in columns else None for name in ("warnings", "reason", "study")]
-        outcome = columns.index("outcome")
-        for row in rows:
-            self.take(row[outcome], *(None if place is None else row[place] for place in places))
-            yield row

@@ -1,45 +1,41 @@
-"""The table of a study into its file, row after row: CSV, SQLite or Parquet by its name."""
+"""The table of a study into its file: CSV, SQLite or Parquet by its name."""
 
 from __future__ import annotations
 
 import csv
-import io
 import itertools
 import json
 import sqlite3
-from array import array
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
+from contextlib import closing
 from pathlib import Path
-from typing import IO, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.sqlite_file import connect
 from .._support.staging import cannot_write, place_to_write
-from .rows import ROWS_OF_A_BLOCK, cell, cells, require_pyarrow
+from .rows import ROWS_OF_A_BLOCK, TableRows, cell, require_pyarrow
 
-ValueRows: TypeAlias = Callable[[], Iterable[list[Any]]]
-"""Starts at the first row with every call; each row has a value for every column."""
-Writer: TypeAlias = Callable[[Path, Sequence[str], ValueRows], "array[int] | None"]
+Writer: TypeAlias = Callable[[Path, TableRows], None]
 
 ROWS_OF_A_GROUP: Final = 10 * ROWS_OF_A_BLOCK
 """Rows of a group of a Parquet file: some megabytes."""
-_DATABASE_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
+_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
     (frozenset({bool}), "BOOLEAN"),
     (frozenset({int}), "INTEGER"),
     (frozenset({int, float}), "REAL"),
     (frozenset({list}), "JSON"),
     (frozenset({str}), "TEXT"),
 )
+"""Type of a column by the types of its values."""
 
 
-def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[int] | None:
+def write_table(path: Path, rows: TableRows) -> None:
     """Write a table; it has its name when it is complete, and else nowhere.
 
     path: ends in .csv, .sqlite or .parquet.
-    rows: values in the order of the columns; read twice for SQLite and Parquet, whose columns have types.
-    Returns: offsets in a CSV file at which each block of rows begins.
     """
-    return writer_of(path)(path, columns, rows)
+    writer_of(path)(path, rows)
 
 
 def writer_of(path: Path) -> Writer:
@@ -54,90 +50,64 @@ def writer_of(path: Path) -> Writer:
     return WRITERS[ending]
 
 
-def write_csv(file: IO[bytes], columns: Sequence[str], rows: Iterable[list[Any]]) -> array[int]:
-    """Write a CSV table; gives where (bytes) each block of rows begins, and where the last one ends."""
-    begins, place, rows = array("q"), 0, iter(rows)
-    block: list[Sequence[str]] = [columns]
-    while block:
-        text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(block)
-        data = text.getvalue().encode()
-        file.write(data)
-        place += len(data)
-        begins.append(place)
-        block = [cells(row) for row in itertools.islice(rows, ROWS_OF_A_BLOCK)]
-    return begins
+def _write_csv(path: Path, rows: TableRows) -> None:
+    with place_to_write(path) as place, place.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(rows.columns)
+        writer.writerows(map(cell, values) for values in rows.values())
 
 
-def _write_csv_file(path: Path, columns: Sequence[str], rows: ValueRows) -> array[int]:
-    with place_to_write(path) as place, place.open("wb") as file:
-        return write_csv(file, columns, rows())
-
-
-def _write_database(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
-    kinds = _kinds(columns, rows())
-    of_columns = (kinds[name] for name in columns)
-    types = [next((name for taken, name in _DATABASE_TYPES if own and own <= taken), "") for own in of_columns]
-    named = ", ".join(f'"{name}" {kind}'.rstrip() for name, kind in zip(columns, types, strict=True))
+def _write_database(path: Path, rows: TableRows) -> None:
+    named = ", ".join(f'"{name}" {kind}'.rstrip() for name, kind in _column_types(rows).items())
+    marks = ", ".join("?" * len(rows.columns))
+    as_sql = ([json.dumps(value) if isinstance(value, list) else value for value in row] for row in rows.values())
     with place_to_write(path) as place:
         try:
-            _insert_rows(connect(place), named, len(columns), rows())
+            with closing(connect(place)) as database:
+                database.execute("pragma journal_mode = off")  # a file that is not complete goes away anyhow
+                database.execute(f"create table study ({named})")
+                database.execute("begin")
+                database.executemany(f"insert into study values ({marks})", as_sql)
+                database.execute("commit")
         except sqlite3.Error as error:
             raise cannot_write(path, OSError(str(error))) from error
 
 
-def _insert_rows(database: sqlite3.Connection, named: str, count: int, rows: Iterable[list[Any]]) -> None:
-    try:
-        database.execute("pragma journal_mode = off")  # a file that is not complete goes away anyhow
-        database.execute(f"create table study ({named})")
-        database.execute("begin")
-        marks = ", ".join("?" * count)
-        as_sql = ([json.dumps(value) if isinstance(value, list) else value for value in row] for row in rows)
-        database.executemany(f"insert into study values ({marks})", as_sql)
-        database.execute("commit")
-    finally:
-        database.close()
-
-
-def _write_parquet(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
+def _write_parquet(path: Path, rows: TableRows) -> None:
     arrow = require_pyarrow()
-    kinds = _kinds(columns, rows())
-    schema = arrow.schema([(name, _arrow_type(arrow, kinds[name])) for name in columns])
-    mixed = [_arrow_type(arrow, kinds[name]) == arrow.string() and kinds[name] - {str} for name in columns]
-    source = iter(rows())
+    types = _column_types(rows)
+    of_kinds = {
+        "BOOLEAN": arrow.bool_(),
+        "INTEGER": arrow.int64(),
+        "REAL": arrow.float64(),
+        "JSON": arrow.list_(arrow.float64()),
+    }
+    schema = arrow.schema([(name, of_kinds.get(kind, arrow.string())) for name, kind in types.items()])
+    source = rows.values()
     with place_to_write(path) as place, arrow.parquet.ParquetWriter(place, schema) as writer:
         while block := list(itertools.islice(source, ROWS_OF_A_GROUP)):
             arrays = [
-                arrow.array([_as_arrow(value, text=bool(text)) for value in values], type=field.type)
-                for values, field, text in zip(zip(*block, strict=True), schema, mixed, strict=True)
+                arrow.array([value if kind else _as_text(value) for value in values], type=field.type)
+                for values, field, kind in zip(zip(*block, strict=True), schema, types.values(), strict=True)
             ]
             writer.write_batch(arrow.record_batch(arrays, schema=schema))
 
 
-def _as_arrow(value: Any, *, text: bool) -> Any:
-    return cell(value) if text and value is not None and not isinstance(value, str) else value
+def _as_text(value: Any) -> str | None:
+    """Text of a value in a column of several types."""
+    return value if value is None or isinstance(value, str) else cell(value)
 
 
-def _arrow_type(arrow: Any, kinds: frozenset[type]) -> Any:
-    for taken, kind in (
-        ({bool}, arrow.bool_()),
-        ({int}, arrow.int64()),
-        ({int, float}, arrow.float64()),
-        ({list}, arrow.list_(arrow.float64())),
-    ):
-        if kinds and kinds <= taken:
-            return kind
-    return arrow.string()
+def _column_types(rows: TableRows) -> dict[str, str]:
+    """Type of each column; empty for one of several types or without values."""
+    types_of_columns: list[set[type]] = [set() for _ in rows.columns]
+    for values in rows.values():
+        for types, value in zip(types_of_columns, values, strict=True):
+            types.add(type(value))
+    own = [types - {type(None)} for types in types_of_columns]
+    kinds = [next((kind for allowed, kind in _TYPES if types and types <= allowed), "") for types in own]
+    return dict(zip(rows.columns, kinds, strict=True))
 
 
-def _kinds(columns: Sequence[str], rows: Iterable[list[Any]]) -> dict[str, frozenset[type]]:
-    """The types of the values of each column, without None."""
-    types_of_columns: list[set[type]] = [set() for _ in columns]
-    for row in rows:
-        for kinds, value in zip(types_of_columns, row, strict=True):
-            kinds.add(type(value))
-    return {name: frozenset(kinds - {type(None)}) for name, kinds in zip(columns, types_of_columns, strict=True)}
-
-
-WRITERS: Final[Mapping[str, Writer]] = {".csv": _write_csv_file, ".sqlite": _write_database, ".parquet": _write_parquet}
+WRITERS: Final[Mapping[str, Writer]] = {".csv": _write_csv, ".sqlite": _write_database, ".parquet": _write_parquet}
 """By the ending of the name."""

@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 from skisnow import read_study
 from skisnow.design import Measured, measured_ski, read_design
 from skisnow.studies import merge_shards, read_table, run_shard, run_study
-from skisnow.studies.table import stored_rows
 
 from ..binaries import BINARY
 from ..databases import SQLITE
@@ -74,9 +73,7 @@ def _partial() -> Files:
 def _read_back(folder: Path, out: str) -> object:
     study = read_study(folder / "study.toml")
     table = read_table(folder / out, study.subject.keys, varied=study.varied)
-    found = stored_rows(folder / out, study.subject.keys)
-    rows = () if found is None else (list(found[1]), found[1][-1:])
-    return table.counts(), table.answers(), table.csv(), repr(table), rows
+    return table.counts(), table.answers(), table.csv(), repr(table), table.rows[-1:]
 
 
 def _gone_on_with(folder: Path) -> object:
@@ -140,9 +137,9 @@ READERS = (
         "study.toml", (_STUDY % "table.csv").encode(), lambda path: repr(read_study(path)), TOML,
         "studies.study:read_study",
     ),
-    _table("table.csv", TABLE, "studies.table:_read_at_once", "studies.table:stored_rows"),
-    _table("table.sqlite", SQLITE, "studies.rows:DatabaseRows.__init__"),
-    _table("table.parquet", BINARY, "studies.rows:ParquetRows.__init__", needs=("pyarrow",)),
+    _table("table.csv", TABLE, "studies.table:_open_csv"),
+    _table("table.sqlite", SQLITE, "studies.table:_read_database"),
+    _table("table.parquet", BINARY, "studies.table:_read_parquet", needs=("pyarrow",)),
     _rows("study .partial", "table.csv.partial", _partial, _gone_on_with,
           "_support.processes.kept_rows:KeptRows.__init__"),
     _rows("study shard", "table.csv.shard-1-of-2", _parts, _merged, "_support.processes.kept_rows:KeptRows.__init__"),
