@@ -19,7 +19,7 @@ from skisnow.parameters import Quantity
 from skisnow.studies import Study, StudyState, StudyTable, read_study, read_table, run_study, study_state
 from skisnow.studies.rows import ROWS_OF_A_BLOCK, TableRows
 from skisnow.studies.run import StudyRows, kept_rows
-from skisnow.studies.writing import write_table
+from skisnow.studies.table import write_table
 from tests.coded import Coded, coded, raises
 
 PLAIN = """\
@@ -149,7 +149,7 @@ def large(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.studies.table.MOST_BYTES_AT_ONCE", 100)
     for module in ("rows", "table"):
         monkeypatch.setattr(f"skisnow.studies.{module}.ROWS_OF_A_BLOCK", 5)
-    monkeypatch.setattr("skisnow.studies.writing.ROWS_OF_A_GROUP", 7)
+    monkeypatch.setattr("skisnow.studies.table.ROWS_OF_A_GROUP", 7)
 
 
 def small_table(study: Study) -> StudyTable:

@@ -14,7 +14,7 @@ from PIL import Image
 from skisnow.carving.answer import answer_dict, answer_question
 from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.report.formatting import significant
-from skisnow.web.carved_turn import PANELS, RATIOS, SLIDERS
+from skisnow.web.pages.carve import PANELS, RATIOS, SLIDERS
 from skisnow.web.widgets import STYLES
 
 from .browser_types import Page

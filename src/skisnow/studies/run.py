@@ -19,8 +19,7 @@ from ..parameters import Quantity
 from .points import Point
 from .rows import TableRows
 from .study import Study, StudyModel, read_study
-from .table import StudyTable, Tally, read_table
-from .writing import write_table, writer_of
+from .table import StudyTable, Tally, read_table, write_table, writer_of
 
 
 class StudyState(Enum):

@@ -19,8 +19,7 @@ from .._support.user_files import own_json
 from ..parameters import Quantity
 from .run import StudyRows, StudyState, kept_rows, table_state, write_rows
 from .study import Study, place_for_previous, read_study
-from .table import StudyTable
-from .writing import writer_of
+from .table import StudyTable, writer_of
 
 MOST_SHARDS: Final = 10_000
 """Of one study (more than a job array has)."""

@@ -16,7 +16,7 @@ from .._support.user_files import is_file, read_toml
 from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
 from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points
 from .subjects import CarveModel, ScenarioModel
-from .writing import WRITERS
+from .table import WRITERS
 
 FORMS: Final = ("grid", "latin_hypercube")
 OWN_KEYS: Final[Mapping[str, tuple[str, ...]]] = {"grid": (), "latin_hypercube": ("n", "seed")}

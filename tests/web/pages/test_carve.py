@@ -18,8 +18,8 @@ from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
 from skisnow.report.formatting import significant
-from skisnow.web import carved_turn
 from skisnow.web.lab_skis import LabSkis
+from skisnow.web.pages import carve as carve_page
 
 from ..campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
 from .desk import Desk, Sheet
@@ -85,20 +85,20 @@ def told(page: Sheet) -> str:
 def held(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, list[Any]]:
     """Answers that come when the event is set, and the questions."""
     released, asked = threading.Event(), list[Any]()
-    at_once = carved_turn.Solver.answers
+    at_once = carve_page.Solver.answers
 
     def late(self: Any, questions: Any) -> Any:
         asked.append(questions.questions)
         assert released.wait(300)
         return at_once(self, questions)
 
-    monkeypatch.setattr(carved_turn.Solver, "answers", late)
+    monkeypatch.setattr(carve_page.Solver, "answers", late)
     return released, asked
 
 
 def said_instead(monkeypatch: pytest.MonkeyPatch, *found: Any) -> None:
     """Let these be the answers."""
-    monkeypatch.setattr(carved_turn.Solver, "answers", lambda *_: list(found))
+    monkeypatch.setattr(carve_page.Solver, "answers", lambda *_: list(found))
 
 
 def campaign(desk: Desk, folder: Path, *, shear: str = "") -> str:
@@ -273,7 +273,7 @@ def test_a_ski_that_cannot_be_read_is_reported(desk: Desk) -> None:
 
 def test_a_late_answer_is_reported_and_one_question_waits(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     released, asked = held(monkeypatch)
-    monkeypatch.setattr(carved_turn, "PATIENCE_S", 0.0)
+    monkeypatch.setattr(carve_page, "PATIENCE_S", 0.0)
     page = desk.open("/carve")
     assert told(page) == "Computing …"
     page.until(lambda: asked)
@@ -295,7 +295,7 @@ def test_what_goes_wrong_behind_a_page_is_reported_on_it(desk: Desk, monkeypatch
     page = desk.open("/carve")
     page.shows("[status] carver: equilibrium.")
     failure = ZeroDivisionError("division by zero")
-    monkeypatch.setattr(carved_turn.Solver, "answers", Mock(side_effect=failure))
+    monkeypatch.setattr(carve_page.Solver, "answers", Mock(side_effect=failure))
     move(page, ANGLE, "49")
     assert desk.fails() is failure
     page.told("notify ")

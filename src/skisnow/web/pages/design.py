@@ -12,12 +12,12 @@ from ..._support.messages import Message, joined
 from ...carving.edge_line import BOOT_REACH
 from ...design import Design
 from ...ski.ski_file import keys_text
-from ..carved_turn import NUMBERS, SLIDERS, CarvedTurn, CarveInputs, Solver, with_sources
 from ..elements import Outcome, button, choice, error_sentence, field, option_texts, page_frame
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
 from ..scenario_fields import SnowChoice
 from ..settings import Lab
 from ..words import said, typed_number
+from .carve import NUMBERS, SLIDERS, CarvedTurn, CarveInputs, Solver, with_sources
 
 PATH: Final = "/design"
 TITLE: Final = Message("Design")

@@ -10,7 +10,6 @@ from nicegui import run, ui
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message, current_language, translations
 from ...report.charts import SkiDrawing, ski_drawing
-from ..carved_turn import ENDS
 from ..elements import (
     Outcome,
     button,
@@ -31,6 +30,7 @@ from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
 from ..uploads import SKI_BOUNDS, confined
 from ..widgets import ChartLine, LineChart, add_ski_table
+from .carve import ENDS
 
 PATH: Final = "/skis"
 TITLE: Final = Message("Skis")

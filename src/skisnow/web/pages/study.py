@@ -11,8 +11,6 @@ from ..._support.messages import Message
 from ...estimation.results import results_json
 from ...parameters import InputValue
 from ...report.campaign.page import RESULTS
-from ..carved_turn import OF_SNOW as CARVE_SNOW
-from ..carved_turn import SLIDERS
 from ..elements import (
     Outcome,
     Words,
@@ -35,6 +33,8 @@ from ..studies import Studies
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..widgets import Act, JobCard, JobList
 from ..words import language_of, said, typed_number
+from .carve import OF_SNOW as CARVE_SNOW
+from .carve import SLIDERS
 from .simulate import GIVEN, NUMBERS, SECTION_WORDS, add_expert_fields, basic, expert, menu_with_default
 from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address
