@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.arrays import FloatArray
-from skisnow.track.curvature import _curvature, running_mean, track_motion
+from skisnow.track.curvature import INTERVAL_FACTOR, _curvature, running_mean, track_motion
 from skisnow.track.smoothing import smooth_track
 from skisnow.track.track import FLAGS, Track, point_flags
 
@@ -38,10 +38,10 @@ def test_intervals_on_a_noisy_circle_cover_as_often_as_they_say() -> None:
     for seed in range(400):
         motion = track_motion(track(circle(RADIUS, SPEED, duration=6.0), noise=NOISE, seed=seed))
         point = 15 + seed % 30
-        low, high = (float(end[point]) for end in motion.curvature_interval())
+        bent = motion.curvature[point] - 1.0 / RADIUS
         apart = motion.heading[point] - SPEED * motion.time[point] / RADIUS
         covered["heading"] += abs(apart) < 1.96 * motion.heading_sd[point]
-        covered["curvature"] += low < 1.0 / RADIUS < high
+        covered["curvature"] += abs(bent) < INTERVAL_FACTOR * motion.curvature_sd[point]
     for share in (count / 400.0 for count in covered.values()):
         assert share == pytest.approx(0.95, abs=0.033)
 
@@ -75,9 +75,9 @@ def test_straight_line_may_be_straight() -> None:
     """Its curvature is 0 within the interval at 95 % of points; 5 % over some 30 independent windows may not be."""
     straight = np.stack([10.0 * 0.1 * np.arange(300), np.zeros(300)], axis=1)
     motion = track_motion(track(straight, noise=NOISE, seed=3))
-    low, high = motion.curvature_interval()
-    assert np.mean(low * high <= 0.0) > 0.85
-    assert np.median(np.maximum(np.abs(low), np.abs(high))) < 0.01
+    size, half = np.abs(motion.curvature), INTERVAL_FACTOR * motion.curvature_sd
+    assert np.mean(size <= half) > 0.85
+    assert np.median(size + half) < 0.01
 
 
 def test_clothoid_has_a_curvature_that_grows_with_the_way() -> None:

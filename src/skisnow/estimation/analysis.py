@@ -259,12 +259,13 @@ def analyse(
     require_range("difference", difference, 0.0, np.inf, above=True, below=True)
     if not isinstance(campaign, Campaign):
         campaign = read_campaign(campaign, progress=progress)
+    progress = progress or (lambda _: None)
     rng = np.random.default_rng(seed)
     penetration = _analyse_penetration(campaign, geometry, rng, n_resamples, progress)
     shear = _analyse_shear(campaign)
     recordings = campaign.snow_micro_pen
     if recordings is not None:
-        _report_progress(progress, f"{len(recordings)} recordings of the SnowMicroPen")
+        progress(f"{len(recordings)} recordings of the SnowMicroPen")
     pen = None if recordings is None else evaluate_recordings(recordings)
     observations = _observations_by_source(campaign, penetration, shear, pen)
     pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
@@ -302,13 +303,13 @@ def _analyse_penetration(
     geometry: GeometryForm,
     rng: np.random.Generator,
     n_resamples: int,
-    progress: Callable[[str], None] | None,
+    progress: Callable[[str], None],
 ) -> PenetrationAnalysis | None:
     if campaign.penetration is None:
         return None
     readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
     uncertainty = reading_uncertainty(campaign)
-    _report_progress(progress, f"hardness of {readings.n_series} penetration experiments")
+    progress(f"hardness of {readings.n_series} penetration experiments")
     screened = screened_penetration(campaign, geometry=geometry)
     estimates = screened.estimates
     if estimates is None:
@@ -339,12 +340,12 @@ def _with_models(
     uncertainty: ReadingUncertainty,
     rng: np.random.Generator,
     n_resamples: int,
-    progress: Callable[[str], None] | None,
+    progress: Callable[[str], None],
 ) -> PenetrationAnalysis:
     """Add the results over all used readings: model tables, the selected model, the factor b."""
     included, model, hardnesses = of_series.screened.used, of_series.model, of_series.hardness
     used = of_series.readings.of(included)
-    _report_progress(progress, f"model table over {used.n} readings")
+    progress(f"model table over {used.n} readings")
     by_last = {symbol: H.value[included] for symbol, H in hardnesses.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
@@ -386,16 +387,9 @@ def _observations_by_source(
 
 def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[CampaignMean, CampaignMean]:
     """Coefficients b0 and b1 of the model of Eqn 11 (b linear in the edge angle), with their bootstrap intervals."""
-    unknown = CampaignMean(*[float("nan")] * 5)
     if penetration is None or penetration.table is None:
-        return unknown, unknown
+        return CampaignMean(), CampaignMean()
     model = Model("H_V", "none", "linear")
     fit = next(fit for fit in penetration.table.fits if fit.model == model)
     (low0, high0), (low1, high1) = penetration.table.intervals[model][2:].tolist()
-    nan = float("nan")
-    return CampaignMean(fit.b0, low0, high0, nan, nan), CampaignMean(fit.b1, low1, high1, nan, nan)
-
-
-def _report_progress(progress: Callable[[str], None] | None, text: str) -> None:
-    if progress:
-        progress(text)
+    return CampaignMean(fit.b0, low0, high0), CampaignMean(fit.b1, low1, high1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -27,11 +28,11 @@ class CampaignMean:
     With several sites the interval takes them as clusters; under four sites it is withheld.
     """
 
-    value: float
-    low: float
-    high: float
-    minimum: float
-    maximum: float
+    value: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    minimum: float = math.nan
+    maximum: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ca
     (2.0, 6.353, True)
     """
     if values.size == 0 or (geometric and np.any(values <= 0)):
-        return CampaignMean(*[float("nan")] * 5)
+        return CampaignMean()
     data = np.log(values) if geometric else values
     mean, half = float(data.mean()), _half_width(data, index_names(sites)[1])
     if geometric:

@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import CONFIDENCE, N_PER_MM, N_PER_MM2, N_PER_MM3, ShownFields
-from ..campaign.records import Campaign, ShearTests, TurningReadings
+from ..campaign.records import Campaign, ShearTests
 from ..statistics.combined_uncertainty import expanded_factor
 from .campaign_model import CampaignModel, Parts
 from .readings import Readings, ReadingUncertainty
@@ -107,38 +107,18 @@ def hardness_of_all_readings(
 
     The variance of ln(F/M) is s² + (u_F/F)² + (k_M u_e/e)².
     """
-    logs, instrument2, touching = _log_ratios(readings, definition, uncertainty)
-    scatter2 = scatter_variance(readings, logs, instrument2, touching)
-    mean = _weighted_mean(readings, logs, scatter2[readings.series] + instrument2, touching)
-    return np.exp(mean), np.sqrt(scatter2)
-
-
-def _log_ratios(
-    readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty
-) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """ln(F/M) of each reading, its known variance, and whether the tool touches."""
     M = definition.measure(readings)
     touching = (M > 0) & (readings.penetration_depth > 0)
     logs = np.log(np.divide(readings.load, M, out=np.ones_like(M), where=touching))
-    return logs, known_variance(readings, definition, uncertainty), touching
-
-
-def _weighted_mean(readings: Readings, logs: FloatArray, variance: FloatArray, touching: BoolArray) -> FloatArray:
-    """Mean of each series weighted by 1/variance; without any variance all readings have the same weight."""
-    weight = np.where(touching, _reciprocal_or_zero(variance), 0.0)
-    exact = readings.sums(weight) == 0.0
+    per_depth = np.divide(definition.growth(readings), M, out=np.zeros_like(M), where=touching)
+    instrument2 = (uncertainty.load / readings.load) ** 2 + (per_depth * uncertainty.depth) ** 2
+    scatter2 = scatter_variance(readings, logs, instrument2, touching)
+    weight = np.where(touching, _reciprocal_or_zero(scatter2[readings.series] + instrument2), 0.0)
+    exact = readings.sums(weight) == 0.0  # without any variance all readings of a series have the same weight
     weight = np.where(touching & exact[readings.series], 1.0, weight)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return readings.sums(weight * logs) / readings.sums(weight)
-
-
-def known_variance(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> FloatArray:
-    """Variance of ln(F/M) of each reading from gauge and load; 0 where the tool does not touch."""
-    M = definition.measure(readings)
-    touching = (M > 0) & (readings.penetration_depth > 0)
-    slope = np.divide(definition.growth(readings), M, out=np.zeros_like(M), where=touching)
-    variance: FloatArray = (uncertainty.load / readings.load) ** 2 + (slope * uncertainty.depth) ** 2
-    return variance
+        mean = readings.sums(weight * logs) / readings.sums(weight)
+    return np.exp(mean), np.sqrt(scatter2)
 
 
 def scatter_variance(readings: Readings, logs: FloatArray, instrument2: FloatArray, touching: BoolArray) -> FloatArray:
@@ -192,15 +172,6 @@ class ShearStress(ShownFields):
     interval: FloatArray
 
 
-def failure_shear_force(moment: npt.ArrayLike, lever_arm: npt.ArrayLike) -> FloatArray:
-    """F_t = M / r (Eqn 7), N; moment in N m, lever arm to the middle of the plate in m.
-
-    >>> float(failure_shear_force(30.0, 0.25))
-    120.0
-    """
-    return np.asarray(moment, float) / np.asarray(lever_arm, float)
-
-
 def failure_shear_stress(
     shear_force: npt.ArrayLike, plate_length: npt.ArrayLike, penetration_depth: npt.ArrayLike
 ) -> FloatArray:
@@ -223,7 +194,7 @@ def shear_stress(campaign: Campaign, tests: ShearTests) -> ShearStress:
     NaN if the campaign states no uncertainty. At M = 0 the stress is 0 and the interval one-sided.
     """
     length = np.array([campaign.plates[name] for name in tests.plate])
-    force = failure_shear_force(tests.moment, tests.lever_arm)
+    force = tests.moment / tests.lever_arm  # F_t = M/r (Eqn 7)
     value = failure_shear_stress(force, length, tests.penetration_depth)
     stated = (campaign.moment_uncertainty, campaign.lever_arm_uncertainty, campaign.depth_uncertainty)
     if not any(stated):
@@ -234,9 +205,8 @@ def shear_stress(campaign: Campaign, tests: ShearTests) -> ShearStress:
         relative2 = (u_r / tests.lever_arm) ** 2 + (u_e / tests.penetration_depth) ** 2
         half = k * np.sqrt((u_M / tests.moment) ** 2 + relative2)
         interval = value[:, None] * np.exp(np.stack((-half, half), axis=-1))
-        highest = failure_shear_stress(
-            failure_shear_force(k * u_M, tests.lever_arm), length, tests.penetration_depth
-        ) * np.exp(k * np.sqrt(relative2))
+        highest = failure_shear_stress(k * u_M / tests.lever_arm, length, tests.penetration_depth)
+        highest = highest * np.exp(k * np.sqrt(relative2))
     at_zero = np.stack((np.zeros_like(value), highest), axis=-1)
     return ShearStress(force, value, np.where((tests.moment > 0)[:, None], interval, at_zero))
 
@@ -262,7 +232,9 @@ def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplaceme
         return ShearDisplacement(np.zeros(m, dtype=np.int64), np.full(m, np.nan), np.full((m, 2), np.nan))
     test = turning.series_of_reading
     share = np.divide(turning.moment, tests.moment[test], out=np.zeros(len(test)), where=tests.moment[test] > 0)
-    rising = (share >= RISING[0]) & (share <= RISING[1]) & _before_the_largest(turning, tests)
+    reached = np.concatenate(([0], np.cumsum(turning.moment >= tests.moment[test])))
+    before_the_largest = reached[1:] == reached[turning.first[:-1]][test]
+    rising = (share >= RISING[0]) & (share <= RISING[1]) & before_the_largest
     count = np.bincount(test[rising], minlength=m)
     slope, error = _slope(turning.moment[rising], turning.turning_angle[rising], test[rising], count)
     own = slope - (1.0 / campaign.pole_stiffness if campaign.pole_stiffness else 0.0)
@@ -275,13 +247,6 @@ def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplaceme
         half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * np.sqrt(relative2)
         interval = value[:, None] * np.exp(np.stack((-half, half), axis=-1))
     return ShearDisplacement(count, value, interval)
-
-
-def _before_the_largest(turning: TurningReadings, tests: ShearTests) -> BoolArray:
-    """Readings before the first one of their test with its largest moment."""
-    largest = turning.moment >= tests.moment[turning.series_of_reading]
-    reached = np.concatenate(([0], np.cumsum(largest)))
-    return np.asarray(reached[1:] == reached[turning.first[:-1]][turning.series_of_reading])
 
 
 def _slope(x: FloatArray, y: FloatArray, test: IntArray, count: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -81,55 +81,40 @@ def layering(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncer
     From ``hardness`` (N/m³), g = 1 and δ = 0. The variance of a reading is u_e² + (dê/dln V)² (s² + (g u_F/F)²) with s
     of the series itself. The prior of δ is normal about 0 with `SEATING_SD`.
     """
-    fit = _Fit(readings, uncertainty)
+    series, largest = readings.series, np.log(readings.load[readings.largest])
+    log_share = np.log(readings.load) - largest[series]
+
+    def line(b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Residual, dê/d ln V and weight of each reading at b = (ln H_V, g, δ)."""
+        volume = np.exp(largest[series] - b[0][series] + b[1][series] * log_share)
+        depth = readings.depth_at_volume(volume)
+        slope = volume / readings.area_at_depth(depth)
+        load2 = (b[1][series] * uncertainty.load / readings.load) ** 2
+        variance = uncertainty.depth**2 + slope**2 * (load2 + scatter2[series])
+        weight = np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
+        return readings.penetration_depth - depth - b[2][series], slope, weight
+
+    def newton(b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray]:
+        residual, slope, weight = line(b, scatter2)
+        J = (-slope, slope * log_share, np.ones_like(slope))
+        return _gauss_newton_step(readings, J, residual, weight, b[2])
+
     b = np.stack((np.log(hardness), np.ones(readings.n_series), np.zeros(readings.n_series)))
     scatter2 = np.full(readings.n_series, 1e-4)
     step = np.full_like(b, np.inf)
     with np.errstate(all="ignore"):  # series without a solution run through as NaN and are separated at the end
         for _ in range(_ITERATIONS):
-            step, _ = fit.step(b, scatter2)
+            step, _ = newton(b, scatter2)
             b = b + np.clip(step, [[-0.5], [-0.3], [-np.inf]], [[0.5], [0.3], [np.inf]])
             b[1] = np.clip(b[1], 0.1, 5.0)
-            previous, scatter2 = scatter2, fit.scatter_step(b, scatter2)
+            previous, scatter2 = scatter2, _scatter_step(readings, scatter2, *line(b, scatter2), b[2])
             drift = np.abs(scatter2 - previous) / (scatter2 + 1e-12)
             if np.nanmax(np.maximum(np.abs(step[:2]).max(axis=0), drift), initial=0.0) < 1e-6:
                 break
-        _, variance = fit.step(b, scatter2)
-        error = np.where(np.abs(step[:2]).max(axis=0) < 1e-4, np.sqrt(variance), np.nan)
+        _, inverse = newton(b, scatter2)
+        error = np.where(np.abs(step[:2]).max(axis=0) < 1e-4, np.sqrt(inverse[:, 1, 1]), np.nan)
         dof = _degrees_of_freedom(readings)
-        dof = np.where(dof >= 1.0, dof, np.nan)
-        return Layering(load_exponent=b[1], load_exponent_error=error[1], degrees_of_freedom=dof)
-
-
-class _Fit:
-    """The linearised fit of (ln H_V, g, δ), all series at once."""
-
-    def __init__(self, readings: Readings, uncertainty: ReadingUncertainty) -> None:
-        self._readings, self._uncertainty = readings, uncertainty
-        self._largest = np.log(readings.load[readings.largest])
-        self._log_share = np.log(readings.load) - self._largest[readings.series]
-
-    def _line(self, b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Residual, dê/d ln V and weight of each reading."""
-        readings, series = self._readings, self._readings.series
-        volume = np.exp(self._largest[series] - b[0][series] + b[1][series] * self._log_share)
-        depth = readings.depth_at_volume(volume)
-        slope = volume / readings.area_at_depth(depth)
-        load2 = (b[1][series] * self._uncertainty.load / readings.load) ** 2
-        variance = self._uncertainty.depth**2 + slope**2 * (load2 + scatter2[series])
-        weight = np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
-        return readings.penetration_depth - depth - b[2][series], slope, weight
-
-    def step(self, b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gauss-Newton steps of b = (ln H_V, g, δ) and the variances of b, both (3, m); `scatter2`: s² of m series."""
-        residual, slope, weight = self._line(b, scatter2)
-        J = (-slope, slope * self._log_share, np.ones_like(slope))
-        step, inverse = _gauss_newton_step(self._readings, J, residual, weight, b[2])
-        return step, np.einsum("mii->im", inverse)
-
-    def scatter_step(self, b: FloatArray, scatter2: FloatArray) -> FloatArray:
-        """Scatter after one Newton step."""
-        return _scatter_step(self._readings, scatter2, *self._line(b, scatter2), b[2])
+        return Layering(b[1], error, np.where(dof >= 1.0, dof, np.nan))
 
 
 def _gauss_newton_step(

@@ -70,15 +70,14 @@ class Model:
         return (
             self != other
             and self.hardness == other.hardness
-            and _RANK[self.a] >= _RANK[other.a]
-            and _RANK[self.b] >= _RANK[other.b]
+            and _N_PARAMETERS[self.a] >= _N_PARAMETERS[other.a]
+            and _N_PARAMETERS[self.b] >= _N_PARAMETERS[other.b]
         )
 
 
 EXACT: Final = 1e-11
 """Residuals below this share of the loads are rounding of some thousand operations."""
 _N_PARAMETERS: Final = {"none": 0, "one": 0, "constant": 1, "linear": 2}
-_RANK: Final = {"none": 0, "one": 0, "constant": 1, "linear": 2}
 
 MODELS: Final = (
     Model("H_e", "linear", "linear"),
@@ -197,36 +196,19 @@ def fit_model(readings: Readings, basis: EndBasis, model: Model, of_load: Conden
         bound = (projection @ (solution.coefficients == 0.0)) > 0
         ends = ends + projection @ solution.coefficients
         n_parameters = solution.rank if basis.flat else model.n_parameters
-    residual = basis.columns @ ends - readings.load
-    return _model_fit(readings, basis, model, ends, bound, n_parameters, residual)
-
-
-def _model_fit(
-    readings: Readings,
-    basis: EndBasis,
-    model: Model,
-    ends: FloatArray,
-    bound: BoolArray,
-    n_parameters: int,
-    residual: FloatArray,
-) -> ModelFit:
     n, m = readings.n, readings.n_series
-    squares = residual**2
+    squares = (basis.columns @ ends - readings.load) ** 2
     if float(squares.sum()) <= (EXACT * float(np.linalg.norm(readings.load))) ** 2:
         squares = np.zeros(n)  # a fit to rounding is exact: rounding must not choose between models
     sse = float(squares.sum())
     free = sse - float(squares[readings.largest].sum())
     a0, a1, b0, b1 = (float(c) for c in basis.coefficients(ends))
-    if model.a != "linear":
-        a1 = 0.0
-    if model.b != "linear":
-        b1 = 0.0
     return ModelFit(
         model=model,
         a0=a0,
-        a1=a1,
+        a1=a1 if model.a == "linear" else 0.0,
         b0=b0,
-        b1=b1,
+        b1=b1 if model.b == "linear" else 0.0,
         n=n,
         n_series=m,
         n_parameters=n_parameters,

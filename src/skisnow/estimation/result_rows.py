@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.messages import Message
@@ -88,14 +90,18 @@ class Rows(list[Json]):
     """Rows made from columns by `column_rows`; missing values are already None."""
 
 
-def column_rows(columns: dict[str, list[Any]]) -> Rows:
-    """One row for each entry of the columns."""
-    keys = tuple(columns)
-    return Rows(dict(zip(keys, values, strict=True)) for values in zip(*columns.values(), strict=True))
+Columns: TypeAlias = Mapping[str, Sequence[Any] | npt.NDArray[Any]]
 
 
-def finite_or_none(values: FloatArray) -> list[Any]:
-    """A column of numbers (m,) or intervals (m, 2) with None for values that are not finite."""
+def column_rows(columns: Columns) -> Rows:
+    """One row for each entry of the columns: lists, numbers (m,) or intervals (m, 2); None for what is not finite."""
+    keys, listed = tuple(columns), [_listed(values) for values in columns.values()]
+    return Rows(dict(zip(keys, values, strict=True)) for values in zip(*listed, strict=True))
+
+
+def _listed(values: Sequence[Any] | npt.NDArray[Any]) -> Sequence[Any]:
+    if not isinstance(values, np.ndarray):
+        return values
     listed: list[Any] = values.tolist()
     finite = np.isfinite(values).reshape(len(values), -1).all(axis=1)
     for index in np.flatnonzero(~finite).tolist():
@@ -107,53 +113,47 @@ def penetration_experiments(
     tests: PenetrationTests, screened: Screened, estimates: SeriesEstimates | PenetrationAnalysis
 ) -> list[Json]:
     """The rows ``penetration.experiments``: description of each series, its flags, its hardness, its unloading."""
-    columns: dict[str, list[Any]] = {
-        "experiment": list(tests.experiment),
-        "site": list(tests.site),
-        "tool": list(tests.tool),
+    hardness, unloading = estimates.hardness, estimates.unloading
+    columns: Columns = {
+        "experiment": tests.experiment,
+        "site": tests.site,
+        "tool": tests.tool,
         "edge_angle_deg": whole_degrees(tests.edge_angle),
-        "n_loads": np.diff(tests.first).tolist(),
-        "n_zero": estimates.model.n_zero.tolist(),
-        "used": screened.used.tolist(),
+        "n_loads": np.diff(tests.first),
+        "n_zero": estimates.model.n_zero,
+        "used": screened.used,
         "flags": screened.codes(),
+        **{kind.key: hardness[symbol].value / kind.si for symbol, kind in DEFINITIONS.items()},
+        **{
+            f"{symbol}_interval_{kind.unit_key}": hardness[symbol].interval / kind.si
+            for symbol, kind in DEFINITIONS.items()
+        },
+        "n_unloading": unloading.n_readings,
+        "unloading_ratio": unloading.unloading_ratio,
+        "unloading_ratio_interval": unloading.unloading_ratio_interval,
+        "rebound_ratio": unloading.rebound_ratio,
+        "rebound_ratio_interval": unloading.rebound_ratio_interval,
+        "k_u_N_per_mm3": unloading.unloading_stiffness / N_PER_MM3,
+        "k_u_interval_N_per_mm3": unloading.unloading_stiffness_interval / N_PER_MM3,
     }
-    for symbol, definition in DEFINITIONS.items():
-        columns[definition.key] = finite_or_none(estimates.hardness[symbol].value / definition.si)
-    for symbol, definition in DEFINITIONS.items():
-        columns[f"{symbol}_interval_{definition.unit_key}"] = finite_or_none(
-            estimates.hardness[symbol].interval / definition.si
-        )
-    return column_rows(columns | _unloading_columns(estimates.unloading))
-
-
-def _unloading_columns(unloading: Unloading) -> dict[str, list[Any]]:
-    return {
-        "n_unloading": unloading.n_readings.tolist(),
-        "unloading_ratio": finite_or_none(unloading.unloading_ratio),
-        "unloading_ratio_interval": finite_or_none(unloading.unloading_ratio_interval),
-        "rebound_ratio": finite_or_none(unloading.rebound_ratio),
-        "rebound_ratio_interval": finite_or_none(unloading.rebound_ratio_interval),
-        "k_u_N_per_mm3": finite_or_none(unloading.unloading_stiffness / N_PER_MM3),
-        "k_u_interval_N_per_mm3": finite_or_none(unloading.unloading_stiffness_interval / N_PER_MM3),
-    }
+    return column_rows(columns)
 
 
 def campaign_model_results(model: CampaignModel, unloading: Unloading) -> Json:
     """``penetration.campaign_model``: spreads with degrees of freedom by group, priors, and omitted readings."""
     spreads, freedom, priors = model.spreads, model.freedom, model.priors
-    n_series = np.bincount(model.group[model.counts], minlength=len(model.group_names))
-    columns = {
-        "group": list(model.group_names),
-        "n_series": n_series.tolist(),
-        "seating_mm": finite_or_none(np.sqrt(spreads.seating2) / MM),
-        "seating_degrees_of_freedom": finite_or_none(freedom.seating),
-        "mean_exponent": finite_or_none(spreads.mean_exponent),
-        "layering": finite_or_none(np.sqrt(spreads.layering2)),
-        "layering_degrees_of_freedom": finite_or_none(freedom.layering),
-        "relative_scatter": finite_or_none(np.sqrt(spreads.scatter2)),
-        "scatter_degrees_of_freedom": finite_or_none(freedom.scatter),
-        "rebound_scatter": finite_or_none(unloading.rebound_scatter),
-        "rebound_degrees_of_freedom": finite_or_none(unloading.rebound_freedom),
+    columns: Columns = {
+        "group": model.group_names,
+        "n_series": np.bincount(model.group[model.counts], minlength=len(model.group_names)),
+        "seating_mm": np.sqrt(spreads.seating2) / MM,
+        "seating_degrees_of_freedom": freedom.seating,
+        "mean_exponent": spreads.mean_exponent,
+        "layering": np.sqrt(spreads.layering2),
+        "layering_degrees_of_freedom": freedom.layering,
+        "relative_scatter": np.sqrt(spreads.scatter2),
+        "scatter_degrees_of_freedom": freedom.scatter,
+        "rebound_scatter": unloading.rebound_scatter,
+        "rebound_degrees_of_freedom": unloading.rebound_freedom,
     }
     return {
         "grouped_by": model.grouped_by,
@@ -185,18 +185,18 @@ def shear_experiments(
     """The rows ``shear.experiments``: description of each test, its flags, its force and stress."""
     return column_rows(
         {
-            "experiment": list(tests.experiment),
-            "site": list(tests.site),
-            "plate": list(tests.plate),
+            "experiment": tests.experiment,
+            "site": tests.site,
+            "plate": tests.plate,
             "edge_angle_deg": whole_degrees(tests.edge_angle),
-            "F_t_N": finite_or_none(stress.force),
-            "S_f_N_per_mm2": finite_or_none(stress.value / N_PER_MM2),
-            "S_f_interval_N_per_mm2": finite_or_none(stress.interval / N_PER_MM2),
-            "used": screened.used.tolist(),
+            "F_t_N": stress.force,
+            "S_f_N_per_mm2": stress.value / N_PER_MM2,
+            "S_f_interval_N_per_mm2": stress.interval / N_PER_MM2,
+            "used": screened.used,
             "flags": screened.codes(),
-            "n_turning": displacement.n_readings.tolist(),
-            "shear_displacement_mm": finite_or_none(displacement.value / MM),
-            "shear_displacement_interval_mm": finite_or_none(displacement.interval / MM),
+            "n_turning": displacement.n_readings,
+            "shear_displacement_mm": displacement.value / MM,
+            "shear_displacement_interval_mm": displacement.interval / MM,
         }
     )
 
@@ -224,11 +224,11 @@ def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
     si = DEFINITIONS[fit.model.hardness].si
     factor_a, factor_b = si * MM2, si * MM3
     factors = {"a0": factor_a, "a1": factor_a, "b0": factor_b, "b1": factor_b}
-    fitted = _fitted_coefficients(fit.model)
+    forms = {"a0": ("constant", "linear"), "a1": ("linear",), "b0": ("constant", "linear"), "b1": ("linear",)}
     pairs: dict[str, list[float] | None] = dict.fromkeys(factors)
-    if intervals is not None:
-        for index, (name, factor) in enumerate(factors.items()):
-            pairs[name] = (intervals[index] * factor).tolist() if name in fitted else None
+    for index, (name, factor) in enumerate(factors.items()):
+        if intervals is not None and getattr(fit.model, name[0]) in forms[name]:
+            pairs[name] = (intervals[index] * factor).tolist()
     return (
         _model_head(fit.model)
         | {name: getattr(fit, name) * factor for name, factor in factors.items()}
@@ -243,16 +243,6 @@ def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
             "intervals": pairs,
         }
     )
-
-
-def _fitted_coefficients(model: Model) -> set[str]:
-    fitted = set()
-    for name, term in (("a", model.a), ("b", model.b)):
-        if term in ("constant", "linear"):
-            fitted.add(f"{name}0")
-        if term == "linear":
-            fitted.add(f"{name}1")
-    return fitted
 
 
 def nested_row(row: NestedRows) -> Json:

@@ -20,12 +20,12 @@ from ..snow.published import hand_hardness
 from ..snow.published.moessner_2013 import SNOW_DENSITY_RANGE, failure_shear_stress_from_density
 from .analysis import Analysis
 from .errors_in_depth import VolumeFactor
-from .parts import PenetrationAnalysis, ShearAnalysis, SiteMean, campaign_notes
+from .parts import SiteMean, campaign_notes
 from .regressions import Regression
 from .result_rows import (
+    Columns,
     campaign_model_results,
     column_rows,
-    finite_or_none,
     model_rows,
     nested_row,
     penetration_experiments,
@@ -163,6 +163,34 @@ def _penetration_json(analysis: Analysis) -> Json:
             "unloading": [],
             "growing_hardness": {"experiments": [], "sites": []},
         }
+    model, fitted, growing = estimates.model, estimates.fitted, estimates.growing
+    seating: Columns = {
+        "experiment": tests.experiment,
+        "depth_offset_mm": model.offset / MM,
+        "interval_mm": model.offset_interval / MM,
+        "H_V_change_percent": 100.0 * estimates.seating_change,
+    }
+    hardness: Columns = {
+        "experiment": tests.experiment,
+        "H_V_N_per_mm3": fitted.value["H_V"] / N_PER_MM3,
+        "H_V_interval_N_per_mm3": model.hardness_interval / N_PER_MM3,
+        "relative_scatter": fitted.scatter,
+    }
+    growth: Columns = {
+        "experiment": tests.experiment,
+        "H_0_N_per_mm3": growing.surface_hardness / N_PER_MM3,
+        "growth_percent": 100.0 * growing.growth,
+        "growth_interval_percent": 100.0 * growing.growth_interval,
+    }
+    growth_of_sites = [
+        {
+            "site": row.site,
+            "n": row.n,
+            "growth_percent": 100.0 * row.value,
+            "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
+        }
+        for row in estimates.site_growth
+    ]
     return {
         "experiments": penetration_experiments(tests, estimates.screened, estimates),
         "models": model_rows(estimates.table),
@@ -170,14 +198,11 @@ def _penetration_json(analysis: Analysis) -> Json:
         "selected": selected_model(estimates),
         "warnings": list(estimates.warnings),
         "volume_factor": _volume_factor(estimates.volume_factor),
-        "campaign_model": campaign_model_results(estimates.model, estimates.unloading),
-        "seating": _seating_json(tests.experiment, estimates),
-        "errors_in_depth": {
-            "models": model_rows(estimates.errors_in_depth),
-            "experiments": _fitted_hardness(tests.experiment, estimates),
-        },
+        "campaign_model": campaign_model_results(model, estimates.unloading),
+        "seating": column_rows(seating),
+        "errors_in_depth": {"models": model_rows(estimates.errors_in_depth), "experiments": column_rows(hardness)},
         "unloading": [_site_unloading(row) for row in estimates.site_unloading],
-        "growing_hardness": _growing_hardness(tests.experiment, estimates),
+        "growing_hardness": {"experiments": column_rows(growth), "sites": growth_of_sites},
     }
 
 
@@ -205,52 +230,8 @@ def _site_unloading(row: SiteUnloading) -> Json:
     }
 
 
-def _seating_json(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:
-    return column_rows(
-        {
-            "experiment": list(experiment),
-            "depth_offset_mm": finite_or_none(penetration.model.offset / MM),
-            "interval_mm": finite_or_none(penetration.model.offset_interval / MM),
-            "H_V_change_percent": finite_or_none(100.0 * penetration.seating_change),
-        }
-    )
-
-
-def _growing_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> Json:
-    growing = penetration.growing
-    columns = {
-        "experiment": list(experiment),
-        "H_0_N_per_mm3": finite_or_none(growing.surface_hardness / N_PER_MM3),
-        "growth_percent": finite_or_none(100.0 * growing.growth),
-        "growth_interval_percent": finite_or_none(100.0 * growing.growth_interval),
-    }
-    sites = [
-        {
-            "site": row.site,
-            "n": row.n,
-            "growth_percent": 100.0 * row.value,
-            "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
-        }
-        for row in penetration.site_growth
-    ]
-    return {"experiments": column_rows(columns), "sites": sites}
-
-
-def _fitted_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:
-    fitted = penetration.fitted
-    return column_rows(
-        {
-            "experiment": list(experiment),
-            "H_V_N_per_mm3": finite_or_none(fitted.value["H_V"] / N_PER_MM3),
-            "H_V_interval_N_per_mm3": finite_or_none(penetration.model.hardness_interval / N_PER_MM3),
-            "relative_scatter": finite_or_none(fitted.scatter),
-        }
-    )
-
-
 def _shear_json(analysis: Analysis) -> Json:
-    shear: ShearAnalysis | None = analysis.shear
-    tests = analysis.campaign.shear
+    shear, tests = analysis.shear, analysis.campaign.shear
     if shear is None or tests is None:
         return {"experiments": [], "displacement": []}
     return {

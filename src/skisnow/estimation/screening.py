@@ -58,14 +58,15 @@ def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Scree
     flags = dict(screen_penetration(campaign, geometry=geometry))
     readings = readings_of(tests, campaign.tools, geometry=geometry)
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
-    used = _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
-    flags["layered"] = layered(readings, np.where(used, H_V, np.nan), reading_uncertainty(campaign))
-    used = _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
-    flags["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
-    used = _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
-    estimates = series_estimates(campaign, tests, readings, counts=used, not_falling=flags[NOT_FALLING])
+
+    def used() -> BoolArray:
+        return _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
+
+    flags["layered"] = layered(readings, np.where(used(), H_V, np.nan), reading_uncertainty(campaign))
+    flags["hardness_outlier"] = hardness_outliers(H_V, used(), tests.site)
+    estimates = series_estimates(campaign, tests, readings, counts=used(), not_falling=flags[NOT_FALLING])
     flags["rebound_unresolved"] = estimates.unloading.is_unresolved
-    return Screened(flags, _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V), estimates)
+    return Screened(flags, used(), estimates)
 
 
 def screened_shear(campaign: Campaign) -> Screened:

@@ -58,11 +58,6 @@ class TrackMotion(ShownFields):
     arc_length_source: ArcLengthSource
     path: PathEstimate | None = None
 
-    def curvature_interval(self) -> tuple[FloatArray, FloatArray]:
-        """Ends (n,), (n,) of the 95 % intervals of the curvature (1/m) due to noise."""
-        half = INTERVAL_FACTOR * self.curvature_sd
-        return self.curvature - half, self.curvature + half
-
 
 def track_motion(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackMotion:
     """Smooth a track and compute its motion.
@@ -126,22 +121,18 @@ def _recorded_speed(track: Track) -> tuple[FloatArray, SpeedSource]:
 def _arc_length(
     track: Track, smoothed: SmoothedTrack, speed: FloatArray, speed_source: SpeedSource, path: PathEstimate | None
 ) -> tuple[FloatArray, ArcLengthSource]:
-    """Arc length (n,) by the odometer, else by the recorded speed, else of the estimated path; and its source."""
+    """Arc length (n,) by the odometer, else by the recorded speed, else of the estimated path; and its source.
+
+    The odometer is interpolated in time over gaps; it can begin above 0.
+    """
     if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:
-        return odometer_arc_length(track), "odometer"
+        recorded, time = np.isfinite(track.odometer), np.maximum.accumulate(track.time)
+        return np.interp(time, time[recorded], np.maximum.accumulate(track.odometer[recorded])), "odometer"
     if speed_source == "recorded":
         return integrated_arc_length(track, smoothed, speed), "recorded speed"
     if path is not None:
         return path.arc_length_at(np.maximum.accumulate(track.time)), "places"
     return places_arc_length(track, smoothed), "places"
-
-
-def odometer_arc_length(track: Track) -> FloatArray:
-    """Distance (n,) (m) of the device's odometer, interpolated in time over gaps; it can begin above 0."""
-    assert track.odometer is not None
-    recorded = np.isfinite(track.odometer)
-    time = np.maximum.accumulate(track.time)
-    return np.interp(time, time[recorded], np.maximum.accumulate(track.odometer[recorded]))
 
 
 def integrated_arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
@@ -166,18 +157,13 @@ def places_arc_length(track: Track, smoothed: SmoothedTrack) -> FloatArray:
     chosen = smoothed.usable
     place = np.where(np.isfinite(smoothed.place), smoothed.place, track.place[:, :2])[chosen]
     steps = np.sum(np.diff(place, axis=0) ** 2, axis=1)
-    height = smooth_height(track, smoothed)[chosen]
-    rises = np.nan_to_num(np.diff(height))
+    recorded = np.where(chosen, track.place[:, 2], np.nan)
+    height = running_mean(track.time, recorded, smoothed.resolution.window, segments(track))
+    rises = np.nan_to_num(np.diff(height[chosen]))
     lengths = np.where(np.diff(segments(track)[chosen]) > 0, 0.0, np.sqrt(steps + rises**2))
     arc_length = np.concatenate([[0.0], np.cumsum(lengths)])
     rising = np.maximum.accumulate(track.time)
     return np.interp(rising, rising[chosen], arc_length)
-
-
-def smooth_height(track: Track, smoothed: SmoothedTrack) -> FloatArray:
-    """Running mean of the height (n,) (m) over the window; NaN where it was not recorded."""
-    height = np.where(smoothed.usable, track.place[:, 2], np.nan)
-    return running_mean(track.time, height, smoothed.resolution.window, segments(track))
 
 
 def segments(track: Track) -> IntArray:

@@ -65,6 +65,11 @@ class GeodeticPoint(Shown):
                     "out_of_range", name=name, value=value, lowest=-limit, limit=limit
                 )
 
+    @property
+    def in_space(self) -> FloatArray:
+        """Earth-centred place (3,) in m."""
+        return earth_centred(*np.array([self.latitude_deg, self.longitude_deg, self.height]))
+
     def __str__(self) -> str:
         """Coordinates to 0.1 mm."""
         return f"latitude {self.latitude_deg:.12g}°, longitude {self.longitude_deg:.12g}°, height {self.height:.9g} m"
@@ -138,8 +143,7 @@ def east_north_up(points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
     points = np.asarray(points, float)
     missing = np.isnan(points[:, 2])
     height = np.where(missing, origin.height, points[:, 2])
-    there = np.array([origin.latitude_deg, origin.longitude_deg, origin.height])
-    difference = earth_centred(points[:, 0], points[:, 1], height) - earth_centred(there[0], there[1], there[2])
+    difference = earth_centred(points[:, 0], points[:, 1], height) - origin.in_space
     place = difference @ east_north_up_axes(origin.latitude_deg, origin.longitude_deg).T
     place[missing, 2] = np.nan
     return np.asarray(place)
@@ -151,12 +155,10 @@ def place_from_origin(place: FloatArray, before: GeodeticPoint, after: GeodeticP
     A rotation and a shift: no distance changes. A place without height is taken to be in the first origin's plane, and
     its height stays NaN.
     """
-    ends = (np.array([point.latitude_deg, point.longitude_deg, point.height]) for point in (before, after))
-    first, last = (earth_centred(at[0], at[1], at[2]) for at in ends)
     axes = [east_north_up_axes(point.latitude_deg, point.longitude_deg) for point in (before, after)]
     missing = np.isnan(place[:, 2])
     level = np.column_stack([place[:, :2], np.where(missing, 0.0, place[:, 2])])
-    moved = (level @ axes[0] + first - last) @ axes[1].T
+    moved = (level @ axes[0] + before.in_space - after.in_space) @ axes[1].T
     moved[missing, 2] = np.nan
     return np.asarray(moved)
 

@@ -92,9 +92,11 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     ascents = [
         (low, high)
         for low, high, rise in zip(corners[:-1], corners[1:], changes, strict=True)
-        if rise >= max(LEAST_HEIGHT, _coasting_height(motion, low))
+        # v²/(2g): height to which the speed at the foot carries
+        if rise >= max(LEAST_HEIGHT, float(np.nan_to_num(motion.speed[low]) ** 2 / (2.0 * STANDARD_GRAVITY)))
     ]
-    climbs = [_climb(smooth, *ascent) for ascent in ascents if _recorded_rise(track, smooth, *ascent) >= LEAST_HEIGHT]
+    rises = np.where(np.diff(segments(track)) > 0, 0.0, np.diff(smooth))  # nothing between two segments of the file
+    climbs = [_climb(smooth, low, high) for low, high in ascents if np.sum(rises[low:high]) >= LEAST_HEIGHT]
     lifts = [_make_stretch(track, motion, height, *climb) for climb in climbs]
     spans = (_descent(motion, smooth, corners, area) for area in _areas_between(ascents, len(track)))
     runs = [_make_stretch(track, motion, height, *ends) for ends in spans if ends is not None]
@@ -115,18 +117,6 @@ def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | No
     if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * arc_length:
         return None, ("The third axis hardly changes: it is taken as the slope's own, and descents are unknown.",)
     return height, ()
-
-
-def _recorded_rise(track: Track, smooth: FloatArray, low: int, high: int) -> float:
-    """Rise (m) of an ascent without that between two segments of the file."""
-    between = np.diff(segments(track)[low : high + 1]) > 0
-    return float(np.sum(np.diff(smooth[low : high + 1])[~between]))
-
-
-def _coasting_height(motion: TrackMotion, foot: int) -> float:
-    """Height (m) to which the speed at the foot of an ascent carries."""
-    speed = motion.speed[foot]
-    return float(speed**2 / (2.0 * STANDARD_GRAVITY)) if np.isfinite(speed) else 0.0
 
 
 def _areas_between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:

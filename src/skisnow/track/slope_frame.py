@@ -89,7 +89,10 @@ def in_slope_frame(
     axes = slope_axes(fall_line_azimuth, angle)
     place = _rotate(track.place - np.asarray(origin, float), axes, missing_height)
     velocity = None if track.velocity is None else _rotate(track.velocity, axes, missing_height)
-    place_sd = None if track.place_sd is None else _rotate_sd(track.place_sd, axes)
+    place_sd = None
+    if track.place_sd is not None:
+        parts = np.where(axes[None] == 0.0, 0.0, (axes[None] * track.place_sd[:, None, :]) ** 2)
+        place_sd = np.asarray(np.sqrt(parts.sum(axis=-1)))
     return replace(
         track,
         place=place,
@@ -109,11 +112,6 @@ def _rotate(vectors: FloatArray, axes: FloatArray, missing_height: str) -> Float
         vertical = np.where(np.isnan(vertical), -(horizontal @ axes[2, :2]) / axes[2, 2], vertical)
     parts = [np.where(axis[2] == 0.0, 0.0, axis[2] * vertical) for axis in axes]
     return np.asarray(horizontal @ axes[:, :2].T + np.stack(parts, axis=-1))
-
-
-def _rotate_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
-    parts = np.where(axes[None] == 0.0, 0.0, (axes[None] * sd[:, None, :]) ** 2)
-    return np.asarray(np.sqrt(parts.sum(axis=-1)))
 
 
 def _require_frame_arguments(

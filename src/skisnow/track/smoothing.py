@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.errors import ParameterError
 from .._support.units import ShownFields
-from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, WeightedValues, local_cubic
+from .local_cubic import FEWEST_POINTS, TERMS, WeightedValues, local_cubic
 from .track import GAP_FACTOR, Track
 
 SHORTEST_INTERVAL: Final = 1e-6
@@ -72,7 +72,9 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
     """
     _require_positive("window", "s", window)
     _require_positive("place_noise", "m", place_noise)
-    usable = usable_points(track)
+    usable = track.usable & np.isfinite(track.time)
+    latest = np.maximum.accumulate(np.where(usable, track.time, -np.inf))
+    usable[1:] &= track.time[1:] > latest[:-1]
     if np.count_nonzero(usable) < FEWEST_POINTS:
         raise ParameterError("{name}: {count} usable points; a smoothed track needs {fewest}. Give a longer track").tag(
             "too_few_points", name=track.name, count=np.count_nonzero(usable), fewest=FEWEST_POINTS
@@ -92,18 +94,20 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
     noises = (noises[0] if place_noise is None else place_noise, noises[1])
     place = WeightedValues(place.values, place.weight / noises[0] ** 2)
     rate = None if rate is None or noises[1] is None else WeightedValues(rate.values, rate.weight / noises[1] ** 2)
-    fits = local_cubic(track.time, windows, length / 2.0, place, rate)
+    half = length / 2.0
+    fits = local_cubic(track.time, windows, half, place, rate)
     fits.coefficients[:, 0] += place.values  # the fits count from each point's own place
+    to_si = np.array([1.0, 1.0 / half, 2.0 / half**2])
+    derivatives = fits.coefficients[:, :3] * to_si[:, None]
+    # the variance of a window counts instead of the noise if it is significantly larger
+    degrees = np.maximum(2.0 * (fits.place_count + fits.rate_count - TERMS), 1.0)
+    scatter = (fits.place_misfit + fits.rate_misfit) / degrees
+    excess = np.where(scatter > chi2.ppf(_SURPRISING, degrees) / degrees, scatter, 1.0)
+    covariance = fits.covariance[:, :3, :3] * np.outer(to_si, to_si) * excess[:, None, None]
     typical = (noises[0], None if rate is None else noises[1])
-    return _build_smoothed_track(fits, length, part, usable, typical, Resolution.of_window(length, step, *typical))
-
-
-def usable_points(track: Track) -> BoolArray:
-    """Points (n,) bool that can be smoothed: usable, and later than all points before."""
-    usable = track.usable & np.isfinite(track.time)
-    latest = np.maximum.accumulate(np.where(usable, track.time, -np.inf))
-    usable[1:] &= track.time[1:] > latest[:-1]
-    return usable
+    resolution = Resolution.of_window(length, step, *typical)
+    at, velocity, acceleration = np.moveaxis(derivatives, 1, 0)
+    return SmoothedTrack(at, velocity, acceleration, covariance, part, usable, *typical, resolution)
 
 
 def parts(track: Track, usable: BoolArray) -> IntArray:
@@ -166,7 +170,9 @@ def _places(track: Track, usable: BoolArray) -> WeightedValues:
         has_sd = usable & np.isfinite(stated) & (stated > 0.0)
         if has_sd.any():
             weight[has_sd] *= (np.median(stated[has_sd]) / stated[has_sd]) ** 2
-    return WeightedValues(fill_rows(track.place[:, :2], usable), weight)
+    # an unknown place is replaced by the last known one, at the start by the next
+    last = np.maximum.accumulate(np.where(usable, np.arange(len(usable)), -1))
+    return WeightedValues(track.place[np.where(last < 0, int(np.argmax(usable)), last), :2], weight)
 
 
 def _weighted_velocities(track: Track, usable: BoolArray) -> WeightedValues | None:
@@ -181,12 +187,6 @@ def _weighted_velocities(track: Track, usable: BoolArray) -> WeightedValues | No
         if stated.any():
             weight[stated] *= (np.median(track.speed_sd[stated]) / track.speed_sd[stated]) ** 2
     return WeightedValues(np.where(has_velocity[:, None], track.velocity[:, :2], 0.0), weight)
-
-
-def fill_rows(values: FloatArray, is_known: BoolArray) -> FloatArray:
-    """Copy of `values` (n, d) in which each unknown row is replaced by the last known one (at the start the next)."""
-    last = np.maximum.accumulate(np.where(is_known, np.arange(len(values)), -1))
-    return values[np.where(last < 0, int(np.argmax(is_known)), last)]
 
 
 def _noises(
@@ -218,31 +218,6 @@ def _noise(misfit: FloatArray, freedom: IntArray) -> float:
         return 0.0
     degrees = 2.0 * freedom[usable]  # two coordinates
     return float(np.sqrt(np.median(misfit[usable] / chi2.ppf(0.5, degrees))))
-
-
-def _build_smoothed_track(
-    fits: LocalCubic,
-    length: float,
-    part: IntArray,
-    usable: BoolArray,
-    noises: tuple[float, float | None],
-    resolution: Resolution,
-) -> SmoothedTrack:
-    half = length / 2.0
-    to_si = np.array([1.0, 1.0 / half, 2.0 / half**2])
-    derivatives = fits.coefficients[:, :3] * to_si[:, None]
-    covariance = fits.covariance[:, :3, :3] * np.outer(to_si, to_si) * _excess(fits)[:, None, None]
-    return SmoothedTrack(
-        derivatives[:, 0], derivatives[:, 1], derivatives[:, 2], covariance, part, usable, *noises, resolution
-    )
-
-
-def _excess(fits: LocalCubic) -> FloatArray:
-    """Factor (n,) by which the variance of a window exceeds the noise, if significant; otherwise 1."""
-    degrees = 2.0 * (fits.place_count + fits.rate_count - TERMS)
-    scatter = (fits.place_misfit + fits.rate_misfit) / np.maximum(degrees, 1.0)
-    limit = chi2.ppf(_SURPRISING, np.maximum(degrees, 1.0)) / np.maximum(degrees, 1.0)
-    return np.where(scatter > limit, scatter, 1.0)
 
 
 @dataclass(frozen=True, slots=True)

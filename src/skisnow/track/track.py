@@ -80,7 +80,7 @@ class Track(Shown):
     place: FloatArray
     speed: FloatArray
     time_scale: str
-    frame: str
+    frame: str = "x, y, z of the file, in m"
     velocity: FloatArray | None = None
     place_sd: FloatArray | None = None
     speed_sd: FloatArray | None = None

@@ -8,7 +8,6 @@ from itertools import pairwise
 from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.units import DEGREE
@@ -88,20 +87,14 @@ def find_turns(
     return tuple(_make_turn(motion, piece, float(start), float(end)) for piece, start, end in spans)
 
 
-def _signs(motion: TrackMotion) -> npt.NDArray[np.int8]:
-    """1 for points that significantly turn left, −1 for right, 0 for others."""
-    with np.errstate(invalid="ignore"):
-        sure = np.abs(motion.curvature) > np.maximum(SIGNIFICANCE * motion.curvature_sd, 1.0 / STRAIGHT)
-    return np.where(sure & motion.smoothed.usable, np.sign(np.nan_to_num(motion.curvature)), 0).astype(np.int8)
-
-
 def _pieces(motion: TrackMotion, first: int, last: int, patience: float) -> Iterator[_Piece]:
     """Stretches with a significant curvature of the same sign."""
-    signs = _signs(motion)[first : last + 1]
-    sure = np.flatnonzero(signs) + first
+    with np.errstate(invalid="ignore"):
+        curved = np.abs(motion.curvature) > np.maximum(SIGNIFICANCE * motion.curvature_sd, 1.0 / STRAIGHT)
+    sure = np.flatnonzero((curved & motion.smoothed.usable)[first : last + 1]) + first
     if not len(sure):
         return
-    signs = signs[sure - first]
+    signs = np.sign(motion.curvature[sure])
     rests = np.concatenate([[0], np.cumsum(np.isnan(motion.curvature) & motion.smoothed.usable)])
     ends = (
         (np.diff(signs) != 0)
@@ -148,6 +141,7 @@ def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> 
     headings, errors = _at_times(motion, (start, end))
     length = float(np.diff(np.interp((start, end), motion.time, motion.arc_length))[0])
     angle = float(headings[1] - headings[0])
+    curvature, half = float(abs(motion.curvature[sharpest])), INTERVAL_FACTOR * float(motion.curvature_sd[sharpest])
     return Turn(
         start=start,
         end=end,
@@ -155,9 +149,7 @@ def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> 
         turned_angle=angle,
         turned_angle_sd=float(np.hypot(*errors)),
         least_radius=float(abs(motion.turn_radius[sharpest])),
-        least_radius_interval=_radius_interval(
-            float(abs(motion.curvature[sharpest])), float(motion.curvature_sd[sharpest])
-        ),
+        least_radius_interval=(1.0 / (curvature + half), 1.0 / (curvature - half) if curvature > half else np.inf),
         least_radius_time=float(motion.time[sharpest]),
         mean_radius=length / abs(angle) if angle else np.inf,
         length=length,
@@ -172,11 +164,6 @@ def _sharpest(motion: TrackMotion, piece: _Piece) -> int:
     error = motion.curvature_sd[points]
     points = points[error <= 2.0 * np.median(error)]
     return int(points[int(np.argmax(piece.sign * motion.curvature[points]))])
-
-
-def _radius_interval(curvature: float, error: float) -> tuple[float, float]:
-    half = INTERVAL_FACTOR * error
-    return 1.0 / (curvature + half), 1.0 / (curvature - half) if curvature > half else np.inf
 
 
 def _at_times(motion: TrackMotion, times: tuple[float, float]) -> tuple[FloatArray, FloatArray]:

@@ -99,9 +99,11 @@ def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
     Raises ParameterError: a gates.csv cannot be read.
     """
     tables = [_gate_rows(run / GATES_FILE) for run in (folder, other) if (run / GATES_FILE).is_file()]
-    if len(tables) < 2 or not _are_gates_at_same_places(*tables):
+    if len(tables) < 2 or len(tables[0]) != len(tables[1]):
         return None
-    return compare_gates(*tables)
+    pairs = zip(*tables, strict=True)
+    are_same = all(math.hypot(own["x_m"] - its["x_m"], own["y_m"] - its["y_m"]) <= APART for own, its in pairs)
+    return compare_gates(*tables) if are_same else None
 
 
 def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]]) -> tuple[GateGap, ...]:
@@ -114,13 +116,6 @@ def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str
         gaps.append(GateGap(row["gate"], row["outcome"], time, other_row["outcome"], other_time, gap, lost))
         before = before if gap is None else gap
     return tuple(gaps)
-
-
-def _are_gates_at_same_places(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
-    def apart(own: dict[str, Any], its: dict[str, Any]) -> float:
-        return math.hypot(own["x_m"] - its["x_m"], own["y_m"] - its["y_m"])
-
-    return len(one) == len(other) and all(apart(own, its) <= APART for own, its in zip(one, other, strict=True))
 
 
 def _gate_rows(place: Path) -> list[dict[str, Any]]:

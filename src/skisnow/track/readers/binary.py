@@ -78,7 +78,10 @@ def read_ubx(data: bytes, name: str) -> Recording:
         place_sd=table[:, 7:10],
         speed_sd=table[:, 10],
         fix=table[:, 11] > 0.0,
-        solution=solution_array([_solution(epoch.message) for epoch in epochs]),
+        # u-blox 7 does not state the kind of solution and gives code solutions only
+        solution=solution_array(
+            [CARRIER_SOLUTIONS.get(int(getattr(epoch.message, "carrSoln", 0)), "") for epoch in epochs]
+        ),
         heights="above the ellipsoid",
         left_out=counts,
     )
@@ -141,11 +144,6 @@ def _time_of_message(message: Any) -> datetime | None:
     return whole + timedelta(seconds=message.second, microseconds=message.nano / 1000.0)
 
 
-def _solution(message: Any) -> Solution:
-    """Kind of solution; u-blox 7 does not state it and gives code solutions only."""
-    return CARRIER_SOLUTIONS.get(int(getattr(message, "carrSoln", 0)), "")
-
-
 def _epoch_row(epoch: _Epoch) -> tuple[float, ...]:
     """Place (°, °, m), speed, velocity, their standard deviations, and 1 with a fix, otherwise 0."""
     message, place = epoch.message, epoch.precise or epoch.message
@@ -204,29 +202,23 @@ class _Records:
     without_time: int = 0
     segment: int = 0
 
-    def add_event(self, message: Any) -> None:
-        """Begin a new segment if the timer stops: the device pauses."""
-        timer = message.get_value("event", fallback=None) in ("timer", 0)
-        stops = str(message.get_value("event_type", fallback="")).startswith("stop")
-        self.segment += timer and stops
-
-    def add_record(self, message: Any) -> None:
+    def add(self, message: Any) -> None:
+        """Add a ``record``; begin a new segment if an ``event`` is a stop of the timer: the device pauses."""
+        if message.name == "event":
+            timer = message.get_value("event", fallback=None) in ("timer", 0)
+            self.segment += timer and str(message.get_value("event_type", fallback="")).startswith("stop")
+        if message.name != "record":
+            return
         time = message.get_value("timestamp", fallback=None)
         if not isinstance(time, datetime):
             self.without_time += 1
             return
         self.times.append(time.astimezone(UTC))
         self.segments.append(self.segment)
-        self.numbers.append(
-            (
-                _number(message, "position_lat") * SEMICIRCLE,
-                _number(message, "position_long") * SEMICIRCLE,
-                _number(message, "enhanced_altitude", "altitude"),
-                _number(message, "enhanced_speed", "speed"),
-                _number(message, "distance"),
-                _number(message, "gps_accuracy"),
-            )
-        )
+        latitude, longitude = _number(message, "position_lat"), _number(message, "position_long")
+        height, speed = _number(message, "enhanced_altitude", "altitude"), _number(message, "enhanced_speed", "speed")
+        further = _number(message, "distance"), _number(message, "gps_accuracy")
+        self.numbers.append((latitude * SEMICIRCLE, longitude * SEMICIRCLE, height, speed, *further))
 
 
 def read_fit(data: bytes, name: str) -> Recording:
@@ -242,7 +234,6 @@ def read_fit(data: bytes, name: str) -> Recording:
     table = np.array(records.numbers, dtype=float).reshape(-1, 6)
     accuracy = np.where(table[:, 5] > 0.0, table[:, 5], np.nan) / math.sqrt(2.0)
     place_sd = np.column_stack([accuracy, accuracy, np.full(len(table), np.nan)])
-    start = records.times[0] if records.times else None
     return Recording(
         name=name,
         places_in_file=[f"record {place + 1}" for place in range(len(table))],
@@ -250,7 +241,7 @@ def read_fit(data: bytes, name: str) -> Recording:
         place=table[:, :3],
         is_geodetic=True,
         time_scale="UTC",
-        start=start,
+        start=records.times[0] if records.times else None,
         speed=table[:, 3],
         speed_kind="as the device gives it",
         place_sd=None if np.isnan(accuracy).all() else place_sd,
@@ -290,10 +281,8 @@ def _decode_messages(data: bytes, name: str, records: _Records) -> None:
             data, check_crc=fitdecode.CrcCheck.RAISE, error_handling=fitdecode.ErrorHandling.IGNORE
         ) as reader:
             for frame in reader:
-                if frame.frame_type == fitdecode.FIT_FRAME_DATA and frame.name == "record":
-                    records.add_record(frame)
-                elif frame.frame_type == fitdecode.FIT_FRAME_DATA and frame.name == "event":
-                    records.add_event(frame)
+                if frame.frame_type == fitdecode.FIT_FRAME_DATA:
+                    records.add(frame)
     except Exception as error:  # damaged bytes make fitdecode fail in many ways
         allowed = Message("a whole FIT file with right checksums")
         action = Message("It is damaged or ends after {read} records; copy it again.", read=len(records.times))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
@@ -27,11 +27,10 @@ def build_track(recording: Recording, *, origin: GeodeticPoint | None = None) ->
     _require_in_range(recording)
     _require_time(recording)
     place, velocity, at = _projected(recording, fix, origin)
-    speed = np.full(len(recording.time), np.nan) if recording.speed is None else recording.speed
-    negative = np.isfinite(speed) & (speed < 0.0)
+    negative = np.isfinite(recording.speed) & (recording.speed < 0.0)
     time, rounded = spread_times(recording.time - recording.time[0], place[:, :2])
     time = time - time[0]
-    speed, notes = _checked_speed(recording, np.where(negative, np.nan, speed), time, place[:, :2])
+    speed, notes = _checked_speed(recording, np.where(negative, np.nan, recording.speed), time, place[:, :2])
     solution = None if recording.solution is None else np.where(fix, recording.solution, "")
     flags = point_flags(
         time,
@@ -43,27 +42,19 @@ def build_track(recording: Recording, *, origin: GeodeticPoint | None = None) ->
         rounded=rounded,
         not_finite=recording.not_finite,
     )
-    return Track(
-        name=recording.name,
+    kept: dict[str, Any] = {item.name: getattr(recording, item.name) for item in fields(Track)}
+    projected = f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}"
+    return replace(
+        Track(**kept),
         time=time,
         place=place,
         speed=speed,
-        time_scale=recording.time_scale,
-        frame=recording.axes_in_words
-        if at is None
-        else f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}",
+        frame=recording.frame if at is None else projected,
         velocity=velocity,
-        place_sd=recording.place_sd,
-        speed_sd=recording.speed_sd,
         solution=solution,
-        odometer=recording.odometer,
-        start=recording.start,
         flags=flags,
         axes="east_north_up" if recording.is_geodetic else recording.axes,
         origin=at,
-        first_time=recording.first_time,
-        speed_kind=recording.speed_kind,
-        further_columns=recording.further_columns,
         left_out={words: count for words, count in recording.left_out.items() if count},
         notes=(*recording.notes, *notes),
     )
@@ -134,17 +125,15 @@ def _projected(
             action = Message("The file has local metres only; leave the origin out.")
             raise track_error("no_place_on_earth", recording.name, allowed, action, value=str(origin))
         return recording.place, recording.velocity, None
-    at = origin or recording.default_origin or _first(recording.place[fix])
+    at = origin or recording.default_origin
+    if at is None:  # the first point; if its height is missing, with the first recorded height
+        points = recording.place[fix]
+        heights = [*points[np.isfinite(points[:, 2]), 2].tolist(), 0.0]
+        at = GeodeticPoint(float(points[0, 0]), float(points[0, 1]), heights[0])
     velocity = recording.velocity
     if velocity is not None:
         velocity = rotate_to_origin(velocity, recording.place, origin=at)
     return east_north_up(recording.place, origin=at), velocity, at
-
-
-def _first(points: FloatArray) -> GeodeticPoint:
-    """First point; if its height is missing, with the first recorded height."""
-    heights = points[np.isfinite(points[:, 2]), 2]
-    return GeodeticPoint(float(points[0, 0]), float(points[0, 1]), float(heights[0]) if len(heights) else 0.0)
 
 
 def _require_points(recording: Recording) -> None:

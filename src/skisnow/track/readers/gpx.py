@@ -121,19 +121,31 @@ def read_gpx(text: str, name: str) -> Recording:
         height, speed or distance is not a number.
     """
     points = _read_points(text, name)
-    distance = [_metres_or_nan(point, name, place, "distance") for place, point in enumerate(points)]
-    moments = [_required_time(point, name, place) for place, point in enumerate(points)]
+    moments, numbers = [], []
+    for place, point in enumerate(points, start=1):
+        moments.append(_required_time(point, name, place))
+        absent, texts = None if point.needs_place else "nan", point.texts
+        # speed of GPX 1.0, or of the first element called speed in the point's extensions
+        cells = {
+            ("lat", "degrees"): texts.get("lat", absent),
+            ("lon", "degrees"): texts.get("lon", absent),
+            ("ele", "m"): texts.get("ele") or "nan",
+            ("speed", "m/s"): texts.get("speed") or texts.get("extended speed") or "nan",
+            ("distance", "m"): texts.get("distance") or "nan",
+        }
+        numbers.append([_number(cell, name, place, *column) for column, cell in cells.items()])
+    table = np.array(numbers, dtype=float).reshape(-1, 5)
     return Recording(
         name=name,
         places_in_file=[f"point {place + 1}" for place in range(len(points))],
         time=np.array([(time - moments[0]).total_seconds() for time in moments]),
-        place=np.array([_place(point, name, place) for place, point in enumerate(points)], dtype=float).reshape(-1, 3),
+        place=table[:, :3],
         is_geodetic=True,
         time_scale="UTC",
         start=moments[0] if moments else None,
-        speed=np.array([_speed(point, name, place) for place, point in enumerate(points)], dtype=float),
+        speed=table[:, 3],
         speed_kind="as the device gives it",
-        odometer=None if np.isnan(distance).all() else np.array(distance),
+        odometer=None if np.isnan(table[:, 4]).all() else table[:, 4],
         fix=np.array([point.texts.get("fix") != "none" for point in points], dtype=bool),
         heights="above mean sea level, as recorded",
         segment=np.array([point.segment for point in points], dtype=np.int64),
@@ -163,34 +175,14 @@ def _required_time(point: _Point, name: str, place: int) -> datetime:
     time = moment(text.upper())
     if time is None:
         allowed = Message("a time such as 2022-12-27T15:51:14Z in every point, unlike in a drawn route")
-        where = f"point {place + 1}"
-        raise track_error("not_a_time", name, allowed, place=where, column="time", value=text or None)
+        raise track_error("not_a_time", name, allowed, place=f"point {place}", column="time", value=text or None)
     return time.replace(tzinfo=UTC)  # a time without a zone is in UTC, as the format defines
-
-
-def _place(point: _Point, name: str, place: int) -> tuple[float, float, float]:
-    absent = None if point.needs_place else "nan"
-    return (
-        _number(point.texts.get("lat", absent), name, place, "lat", "degrees"),
-        _number(point.texts.get("lon", absent), name, place, "lon", "degrees"),
-        _metres_or_nan(point, name, place, "ele"),
-    )
-
-
-def _metres_or_nan(point: _Point, name: str, place: int, key: str) -> float:
-    return _number(point.texts.get(key) or "nan", name, place, key, "m")
-
-
-def _speed(point: _Point, name: str, place: int) -> float:
-    """Speed in m/s: of GPX 1.0, or of the first element called speed in the point's extensions."""
-    text = point.texts.get("speed") or point.texts.get("extended speed") or "nan"
-    return _number(text, name, place, "speed", "m/s")
 
 
 def _number(text: str | None, name: str, place: int, column: str, unit: str) -> float:
     """The number; NaN if the file has `nan` or `inf`, which is flagged."""
     value = math.nan if text is None else number(text)
     if math.isnan(value) and (text is None or not is_not_finite(text)):
-        allowed, where = Message("a finite number in {unit}", unit=unit), f"point {place + 1}"
-        raise track_error("not_a_number", name, allowed, place=where, column=column, value=text)
+        allowed = Message("a finite number in {unit}", unit=unit)
+        raise track_error("not_a_number", name, allowed, place=f"point {place}", column=column, value=text)
     return value

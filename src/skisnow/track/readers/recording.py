@@ -4,65 +4,42 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from datetime import datetime
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Final
 
-from ..._support.arrays import BoolArray, FloatArray, IntArray
+from ..._support.arrays import BoolArray, IntArray
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, current_language, template
 from ...parameters import Quantity
 from ..projection import HIGHEST, GeodeticPoint
-from ..track import Axes, SolutionArray
+from ..track import Track
 
 
-@dataclass(eq=False)
-class Recording:
-    """Points in the order of a file; absent numbers are NaN.
+@dataclass(frozen=True, eq=False, repr=False)
+class Recording(Track):
+    """A track as the reader of one format returns it: times with any zero, places as written, without flags.
 
-    name: the file's name.
+    ``velocity`` and ``place_sd`` are east, north, up at the point itself if ``is_geodetic``, otherwise along x, y, z.
+
     places_in_file: place of each point in the file, for messages: ``"row 12"``.
-    time: (n,) s, times with any zero; ``start`` belongs to the first.
-    place: (n, 3), latitude (°), longitude (°), height (m) where ``is_geodetic``, else x, y, z in m.
-    velocity: (n, 3) m/s or None, east, north, up at the point itself, or along x, y, z.
-    place_sd: (n, 3) m or None, east, north, up at the point itself, or along x, y, z.
+    is_geodetic: True if ``place`` is latitude (°), longitude (°) and height (m), otherwise x, y, z in m.
     fix: (n,) bool or None, True if the receiver had a fix; None if unknown.
-    solution: (n,) or None, as in `Track`; values of points without a fix are ignored.
-    axes_in_words: description of the axes of places that are not geodetic.
     heights: description of the reference of the heights.
     default_origin: origin that the file names.
     columns: names of ``x``, ``y``, ``z`` in the file, for messages.
     segment: (n,) or None, number of the segment of each point, if the file separates segments.
     not_finite: (n,) bool or None, True for points of which the file has a cell such as `nan` or `inf`.
-    notes: sentences on how the file was read.
     """
 
-    name: str
+    _: KW_ONLY
     places_in_file: Sequence[str]
-    time: FloatArray
-    place: FloatArray
     is_geodetic: bool
-    time_scale: str
-    start: datetime | None = None
-    first_time: float = 0.0
-    speed: FloatArray | None = None
-    speed_kind: str = "as recorded"
-    velocity: FloatArray | None = None
-    place_sd: FloatArray | None = None
-    speed_sd: FloatArray | None = None
-    odometer: FloatArray | None = None
     fix: BoolArray | None = None
-    solution: SolutionArray | None = None
-    axes: Axes = "file"
-    axes_in_words: str = "x, y, z of the file, in m"
     heights: str = "as in the file"
     default_origin: GeodeticPoint | None = None
-    further_columns: tuple[str, ...] = ()
-    left_out: Mapping[str, int] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     segment: IntArray | None = None
     not_finite: BoolArray | None = None
-    notes: tuple[str, ...] = ()
 
 
 FARTHEST: Final = 1e8
@@ -90,7 +67,7 @@ MOTION: Final = {
         ("speed_sd", "m_per_s", 0.0, FASTEST_NUMBER),
     )
 }
-"""Ranges of the quantities of a point, by the field of `Recording`."""
+"""Ranges of the quantities of a point, by the field of `Track`."""
 
 
 _PLACES: Final = {

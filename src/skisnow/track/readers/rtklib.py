@@ -17,7 +17,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import number
-from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
+from ..projection import GeodeticPoint, east_north_up_axes, geodetic
 from ..track import Solution, solution_array
 from .recording import FARTHEST, FASTEST_NUMBER, Recording, is_not_finite, track_error
 
@@ -81,6 +81,7 @@ AXES: Final = {"geodetic": "enu", "earth_centred": "xyz", "baseline": "enu"}
 """Letters of the axes in the names of columns."""
 PAIRS: Final = {"enu": ("ne", "un", "eu"), "xyz": ("xy", "yz", "zx")}
 """Pairs of axes in the names of signed roots of covariances: first with second, second with third, third with first."""
+_COVARIANCES: Final = ("sdxy", "sdyz", "sdzx")
 QUALITIES: Final[dict[float, Solution]] = {
     1.0: "fixed", 2.0: "float", 3.0: "code", 4.0: "code", 5.0: "code", 6.0: "float",
 }  # fmt: skip
@@ -108,7 +109,10 @@ def read_rtklib(text: str, name: str) -> Recording:
     numbers = np.array(table, dtype=float).reshape(len(rows), len(header.columns))
     columns = dict(zip(header.columns, numbers.T, strict=True))
     place, is_geodetic = _place(columns, header, base)
-    velocity, place_sd = _velocity(columns, header, place), _deviations_of_places(columns, header, place)
+    velocity, place_sd = _stack_vectors(columns, "v", header), _deviations_of_places(columns, header, place)
+    if velocity is not None and header.kind == "earth_centred":
+        axes = east_north_up_axes(place[:, 0], place[:, 1])
+        velocity = np.asarray(np.einsum("nij,nj->ni", axes, velocity))
     quality = columns.get("q")
     is_ellipsoidal = "/geodetic" not in "".join(lines[:40]).lower()
     return Recording(
@@ -119,7 +123,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         is_geodetic=is_geodetic,
         time_scale=header.scale,
         start=moments[0] if moments else None,
-        speed=None if velocity is None else np.linalg.norm(velocity, axis=1),
+        speed=np.full(len(rows), np.nan) if velocity is None else np.linalg.norm(velocity, axis=1),
         speed_kind="along the path (length of the recorded velocity)",
         velocity=velocity,
         place_sd=place_sd,
@@ -128,7 +132,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         not_finite=np.array(not_finite, dtype=bool),
         solution=None if quality is None else solution_array([QUALITIES.get(value, "") for value in quality.tolist()]),
         axes="east_north_up",
-        axes_in_words="east, north, up in m from the base station of the solution",
+        frame="east, north, up in m from the base station of the solution",
         heights="above the ellipsoid" if is_ellipsoidal else "above the geoid",
         default_origin=base if header.kind == "baseline" else None,
         columns=dict(zip("xyz", PLACES["geodetic" if is_geodetic else "baseline"], strict=True)),
@@ -150,7 +154,10 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
     cells = cells[: header.width]
     values = [number(cell) for cell in cells]
     first_column = header.width - len(header.columns)
-    used = _used_columns(header.kind)
+    axes = AXES[header.kind]
+    vectors = (f"{prefix}{axis}" for prefix in ("v", "sd", "sdv") for axis in axes)
+    covariances = (*_COVARIANCES, *(f"sdv{pair}" for pair in PAIRS[axes]))
+    used = {"q", *PLACES[header.kind], *vectors, *covariances}  # a bad cell in another column is only flagged
     not_finite = False
     for place, (cell, value) in enumerate(zip(cells, values, strict=True)):
         if math.isfinite(value) and abs(value) <= LARGEST:
@@ -162,14 +169,6 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
             allowed = Message("a finite number with a decimal point, at most {largest:g}, or nan", largest=LARGEST)
             raise track_error("not_a_number", name, allowed, place=f"row {row}", value=cell)
     return moment, _degrees(cells, values) if header.sexagesimal else values, not_finite
-
-
-def _used_columns(kind: str) -> frozenset[str]:
-    """Names of the columns that are read; an unreadable cell in another one is only flagged."""
-    axes = AXES[kind]
-    covariances = ("sdxy", "sdyz", "sdzx") if kind == "earth_centred" else ()
-    vectors = (f"{prefix}{axis}" for prefix in ("v", "sd", "sdv") for axis in axes)
-    return frozenset({"q", *PLACES[kind], *vectors, *covariances, *(f"sdv{pair}" for pair in PAIRS[axes])})
 
 
 def _degrees(cells: list[str], values: list[float]) -> list[float]:
@@ -231,15 +230,7 @@ def _place(columns: dict[str, FloatArray], header: Header, base: GeodeticPoint |
         return geodetic(place), True
     if base is None:
         return place, False
-    begin = earth_centred(*np.array([base.latitude_deg, base.longitude_deg, base.height]))
-    return geodetic(begin + place @ east_north_up_axes(base.latitude_deg, base.longitude_deg)), True
-
-
-def _velocity(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
-    velocity = _stack_vectors(columns, "v", header)
-    if velocity is None or header.kind != "earth_centred":
-        return velocity
-    return np.asarray(np.einsum("nij,nj->ni", east_north_up_axes(place[:, 0], place[:, 1]), velocity))
+    return geodetic(base.in_space + place @ east_north_up_axes(base.latitude_deg, base.longitude_deg)), True
 
 
 def _deviations_of_places(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:

@@ -16,9 +16,9 @@ import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.messages import Message, joined
-from ..._support.spreadsheet_text import number
+from ..._support.spreadsheet_text import decimal_mark, number
 from .recording import FARTHEST, Recording, is_not_finite, track_error
-from .text import Cells, convert_serial_dates, decimal_mark_of, moment, require_width, split_cells
+from .text import Cells, convert_serial_dates, moment, require_width, split_cells
 
 TIMES: Final = ("time_s", "time")
 LOCAL: Final = ("x_m", "y_m", "z_m")
@@ -56,7 +56,7 @@ def read_table(text: str, name: str) -> Recording:
         time_scale="local" if start is None or start.tzinfo is None else "UTC",
         start=start,
         first_time=first_time,
-        speed=table.numbers_if_present(SPEED),
+        speed=table.vectors((SPEED,))[:, 0],
         speed_kind="as the device gives it" if is_geodetic else "along the path",
         place_sd=table.vectors(sd) if any(column in table.columns for column in sd) else None,
         speed_sd=table.numbers_if_present(SPEED_SD),
@@ -107,7 +107,8 @@ class _Table:
         blanks = [("",) * missing for missing in range(width, 0, -1)]
         rows = tuple(row + blanks[len(row)] if len(row) < width else row[:width] for row in cells.rows)
         places = [column.place for column in columns.values()]
-        mark = decimal_mark_of((row[place] for place in places for row in rows if row[place]), cells.separator)
+        filled = (row[place] for place in places for row in rows if row[place])
+        mark = "." if cells.separator == "," else decimal_mark([filled], separator=cells.separator)
         cells = dataclasses.replace(cells, rows=rows)
         return cls(cells, name, mark, is_geodetic, columns, set(), set(), np.zeros(len(rows), dtype=bool))
 
@@ -147,10 +148,11 @@ class _Table:
         values = np.full(len(cells), np.nan)
         values[filled] = [number(cells[place], self.mark) for place in filled]
         for place in (place for place in filled if math.isnan(values[place])):
-            if is_not_finite(cells[place]):
-                self.not_finite[place] = True
-            else:
-                raise self._number_error(place, name, cells[place])
+            if not is_not_finite(cells[place]):
+                mark = Message("a decimal comma") if self.mark == "," else Message("a decimal point")
+                allowed = Message("a finite number with {mark}, or nothing", mark=mark)
+                raise self._cell_error("not_a_number", place, name, cells[place], allowed)
+            self.not_finite[place] = True
         return self._signed(name, values * self.columns[name].factor)
 
     def _signed(self, name: str, values: FloatArray) -> FloatArray:
@@ -178,7 +180,9 @@ class _Table:
         name = next(column for column in TIMES if column in self.columns)
         cells = self.column(name)
         if name == "time_s" or not cells or not math.isnan(number(cells[0], self.mark)):
-            seconds = self._seconds(name, cells)
+            seconds = np.array([number(cell, self.mark) for cell in cells]) * self.columns[name].factor
+            for place in np.flatnonzero(~(np.abs(seconds) <= FARTHEST * 100.0)).tolist():
+                raise self._time_error(place, name, cells[place])
             return (seconds, None, None) if name == "time_s" else convert_serial_dates(seconds)
         moments = [moment(cell) for cell in cells]
         for place, read in enumerate(moments):
@@ -190,12 +194,6 @@ class _Table:
                 raise self._time_error(place + 1, name, cells[place + 1], Message("all with a zone, or all without"))
         return np.array([(read - times[0]).total_seconds() for read in times]), times[0], None
 
-    def _seconds(self, name: str, cells: list[str]) -> FloatArray:
-        values = np.array([number(cell, self.mark) for cell in cells]) * self.columns[name].factor
-        for place in np.flatnonzero(~(np.abs(values) <= FARTHEST * 100.0)).tolist():
-            raise self._time_error(place, name, cells[place])
-        return values
-
     def _time_error(self, place: int, column: str, cell: str, also: str = _IN_EVERY_ROW) -> Exception:
         what = (
             Message("a number in {unit}", unit=_unit(column, self.columns[column].factor))
@@ -204,11 +202,6 @@ class _Table:
         )
         code = "not_a_number" if column == "time_s" else "not_a_time"
         return self._cell_error(code, place, column, cell, joined([what, also]))
-
-    def _number_error(self, place: int, column: str, cell: str) -> Exception:
-        mark = Message("a decimal comma") if self.mark == "," else Message("a decimal point")
-        allowed = Message("a finite number with {mark}, or nothing", mark=mark)
-        return self._cell_error("not_a_number", place, column, cell, allowed)
 
     def _cell_error(self, code: str, place: int, column: str, cell: str, allowed: Message) -> Exception:
         row = f"row {self.cells.lines[place]}"

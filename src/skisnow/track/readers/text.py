@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Final
@@ -13,7 +12,7 @@ import numpy as np
 from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.csv_text import UnreadableTextError, inspect_csv
 from ..._support.messages import Message, count_message
-from ..._support.spreadsheet_text import NoTextError, decimal_mark, decoded
+from ..._support.spreadsheet_text import NoTextError, decoded
 from .recording import track_error
 
 
@@ -76,15 +75,6 @@ def require_width(cells: Cells, name: str) -> None:
             action = Message("A decimal comma in a file separated by commas looks like this; separate by semicolons.")
             value = next(filter(None, row[width:]))
             raise track_error("too_many_cells", name, allowed, action, place=f"row {line}", value=value)
-
-
-def decimal_mark_of(cells: Iterable[str], separator: str) -> str:
-    """Decimal mark of a file: a comma if it is not the separator and at least as frequent as the point in numbers.
-
-    >>> decimal_mark_of(["1", "2,5", "1.5"], ";"), decimal_mark_of(["1", "2"], ";")
-    (',', '.')
-    """
-    return "." if separator == "," else decimal_mark([cells], separator=separator)
 
 
 def moment(cell: str) -> datetime | None:
