@@ -6,6 +6,8 @@ import argparse
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from quantity_tables import page_table
+
 from skisnow.campaign.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
 from skisnow.campaign.smet import WeatherSettings
@@ -15,7 +17,7 @@ from skisnow.cli import build_parser
 from skisnow.cli.shell import NAMES, json_schema
 from skisnow.forces import parameter_checks
 from skisnow.parameters import own_quantities
-from skisnow.parameters.json_schema import page_table, schema_text
+from skisnow.parameters.json_schema import schema_text
 from skisnow.report.run.file import RUN_VARIABLES, SKIER_VARIABLES, RunVariable
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS

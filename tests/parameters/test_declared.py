@@ -1,5 +1,6 @@
 """Quantities that dataclasses declare: what their fields say of them, checks in constructors, values there and back."""
 
+import importlib
 import math
 import os
 import shutil
@@ -17,7 +18,9 @@ from tests.coded import Coded, coded, raises
 import skisnow
 from skisnow._support.errors import ParameterError
 from skisnow.parameters import Allowed, Quantity, Section, Word, build_declared, quantities, require_declared, values_of
-from skisnow.parameters.json_schema import page_table, table_schema
+from skisnow.parameters.json_schema import table_schema
+
+tables: Any = importlib.import_module("quantity_tables")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,12 +167,13 @@ def test_schema_rejects_what_the_constructor_rejects() -> None:
 
 
 def test_table_of_a_page() -> None:
-    rows = page_table(quantities(Bench)).splitlines()
+    rows = tables.page_table(quantities(Bench)).splitlines()
     assert rows[7] == "| `bench.step_ms` | ms | from 0.1 to 5 | 0.5 | choice | step |"
     assert rows[4] == "| `snow.published` | | a text | none | | name of a snow |"
 
 
 PACKAGE = Path(skisnow.__file__).parent
+DOCS = Path(tables.__file__).parent
 BEFORE = "    friction: Annotated[\n"
 DECLARED = """    crust: Annotated[
         float,
@@ -186,7 +190,7 @@ ASKED = """
 from dataclasses import replace
 
 from skisnow._support.errors import ParameterError
-from skisnow.parameters.json_schema import page_table
+from quantity_tables import page_table
 from skisnow.scenario import load_scenario, scenario_file, scenario_text
 from skisnow.scenario.keys import free_key
 from skisnow.scenario.keys import parse_change
@@ -219,7 +223,10 @@ def test_a_new_key_is_one_declaration(tmp_path: Path) -> None:
     text = place.read_text(encoding="utf-8")
     assert text.count(BEFORE) == 1
     place.write_text(text.replace(BEFORE, DECLARED + BEFORE), encoding="utf-8")
-    environment = os.environ | {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join((str(tmp_path), str(DOCS))),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
     done = subprocess.run(
         [sys.executable, "-c", ASKED], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False
     )

@@ -1,5 +1,6 @@
 """One quantity: what it allows in words and in numbers, lists, labels, a table of a file."""
 
+import importlib
 import math
 from dataclasses import dataclass
 from typing import Annotated
@@ -11,7 +12,7 @@ from tests.coded import coded, raises
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import unit_of_name, without_unit
 from skisnow.parameters import Allowed, Quantity, Search, build_declared, checked_table, own_quantities
-from skisnow.parameters.json_schema import output_schema, page_table, schema_of, schema_text
+from skisnow.parameters.json_schema import output_schema, schema_of, schema_text
 
 ANGLE = Quantity("edge_angle_deg", "edge angle", lowest=0.0, highest=90.0, below=True)
 LOAD = Quantity("load_N", "load", lowest=0.0, above=True)
@@ -105,7 +106,8 @@ def test_search_in_a_table_of_a_page() -> None:
         Search(0.5, -1.0, 1.0),
         None,
     )
-    rows = page_table([Quantity("x_m", "", search=each) for each in searches], ("key", "usual size", "bounds"))
+    tables = importlib.import_module("quantity_tables")
+    rows = tables.page_table([Quantity("x_m", "", search=each) for each in searches], ("key", "usual size", "bounds"))
     assert rows.splitlines()[2:] == [
         "| `x_m` | factor e^3 | 0.002 to 1000 |",
         "| `x_m` | 10 m | the start ± 15 |",
