@@ -58,7 +58,7 @@ class Moment:
         arms = [axes @ ski.boot for ski in skis]
         velocity = [np.concatenate([axes @ speed[:3] + np.cross(turning, arm), turning]) for arm in arms]
         beams = [np.zeros((len(ski.unknown), 3)) for ski in skis]
-        for ski, beam, bend in zip(skis, beams, dynamics.beam_dofs, strict=True):
+        for ski, beam, bend in zip(skis, beams, dynamics.part("beam_dofs"), strict=True):
             free = ski.unknown >= 0
             beam[free] = bend[ski.unknown[free, None].astype(int) + np.arange(3)]
         rotation = np.array([axes @ ski.axes.T for ski in skis])

@@ -7,8 +7,9 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
+from tests.ski.beam.dense import dense
 
-from skisnow.ski.beam import clamped, dense
+from skisnow.ski.beam import clamped
 from skisnow.ski.ski import Ski
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

@@ -39,6 +39,6 @@ def flown(record: Record, duration_s: float) -> None:
 def tips(record: Record) -> FloatArray:
     """Places of both skis' tips, as if the skis had no shovel (2, 3) (m)."""
     dynamics, tip = record.setup.dynamics, record.setup.node[0]
-    bent = dynamics.beam_dofs[:, 0]  # the first unknown: the deflection of the node at the tip
+    bent = dynamics.part("beam_dofs")[:, 0]  # the first unknown: the deflection of the node at the tip
     here = [ski.boot + tip * ski.axes[0] + w * ski.axes[2] for ski, w in zip(dynamics.body.skis, bent, strict=True)]
     return np.asarray(dynamics.position + np.array(here) @ dynamics.rotation.T)

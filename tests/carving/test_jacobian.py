@@ -15,7 +15,7 @@ from skisnow.carving.solve import Conditions, _core_ski, solved
 from skisnow.compiled import core
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.beam import CLAMP_LENGTH, ClampedSki, clamped
-from skisnow.ski.checks import EdgeShape
+from skisnow.ski.layout import EdgeShape
 
 Array = npt.NDArray[np.complex128]
 Hinges = list[tuple[float, complex]]

@@ -13,7 +13,7 @@ from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.forces.shear import MachiningShear
 from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
-from skisnow.ski.checks import EdgeShape
+from skisnow.ski.layout import EdgeShape
 
 from ..carving.synthetic import rigid_ski, snow
 from .conftest import edged, straight

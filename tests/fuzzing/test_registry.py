@@ -23,7 +23,7 @@ def test_every_function_that_opens_files_is_in_the_registry() -> None:
     found = openers()
     assert found - COVERED - NO_READERS.keys() == set()
     assert NO_READERS.keys() - found == set()
-    assert {"track.read:_read_bytes", "ski.file_values:file_values", "_support.sqlite_file:connect"} <= found
+    assert {"track.read:_read_bytes", "ski.file_parts:file_values", "_support.sqlite_file:connect"} <= found
 
 
 def test_a_function_has_a_reader_or_a_reason_and_not_both() -> None:

@@ -15,8 +15,9 @@ from skisnow.simulation.run_setup import Setup, laid_out
 from skisnow.simulation.simulated_run import _groove
 from skisnow.simulation.sledge_body import SledgeInertia, base_lateral, base_normal, rotation, sledge_inertia
 from skisnow.simulation.static_start import _carried_across, no_start, weight_meets_base
-from skisnow.ski.beam import ClampedSki, beam_at, clamped, dense
+from skisnow.ski.beam import ClampedSki, clamped
 from tests.carving.synthetic import plain_ski, shovel
+from tests.ski.beam.dense import beam_at, dense
 
 from .runs.sledges import rigid_ski, scenario
 

@@ -113,7 +113,7 @@ def beside(column: str, key: str, value: str) -> Coded:
         ({"EI_N_m2": [100]}, beside("EI_N_m2", "EI_N_m2", "[100]")),
         ({"stiffness_station_mm": [100]}, coded("contradiction", key="stiffness_station_mm", value="[100]")),
         ({"tail_overhang_mm": 20}, coded("contradiction", key="tail_overhang_mm", value="20")),
-        ({"mass_kg": 3.0}, coded("out_of_range", place="mass_kg", value="3.0")),
+        ({"mass_kg": 3.0}, coded("out_of_range", value="3.0")),
         ({"rigid": True}, coded("contradiction", key="EI_N_m2")),
         ({"shape": "ski-def.json"}, coded("contradiction", key="table", value="'rows.csv'", other="shape")),
     ],
@@ -134,7 +134,7 @@ def test_keys_that_contradict_the_table(with_table: Written, changes: dict[str, 
         (ROWS.replace("440", "-440"), "out_of_range"),
         (
             ROWS.replace("-0.4,", "0.4,"),
-            coded("out_of_range", column="station_m", place="line 5, station_m", allowed="less than the 0 before it"),
+            coded("out_of_range", line=5, value="0.4", before=0.0),
         ),
         (ROWS.replace("440,", ""), coded(WRONG_CELL_COUNT, line=4, n_cells=5, n_header=6)),
         (

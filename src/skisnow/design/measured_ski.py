@@ -21,9 +21,9 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message, template
+from .._support.messages import Message
 from .._support.units import DEGREE, MM
-from ..ski.assembling import ArcOutline, SkiParts, width_of_table
+from ..ski.assembling import ArcOutline, assembled_ski, width_of_table
 from ..ski.layout import TAIL_OVERHANG, Layout, StationFunction, layout_of_lengths
 from ..ski.ski import Ski
 from ..ski.ski_file import read_ski
@@ -106,16 +106,16 @@ class _SkiMaker:
         like, base = self._like, self._column("base_height_mm")
         if base is None:
             self._note_assumption(Message("camber, shovel and tail of {ski}", ski=like.name))
-        ski = SkiParts(
+        ski = assembled_ski(
+            layout,
             name=self._measured.name,
             source="",
-            layout=layout,
             width=width,
             base=self._of_like("base_height", layout) if base is None else self._station_table(base, MM, layout).at,
             bending_stiffness=self._stiffness_along_ski(bending, "bending_stiffness", layout),
             torsional_stiffness=self._stiffness_along_ski(torsion, "torsional_stiffness", layout),
             mass=self._measured.mass or 1.0,
-        ).assembled()
+        )
         if self._measured.mass is None:
             per_area = like.mass / -np.trapezoid(like.width, like.station)
             mass = float(per_area * -np.trapezoid(ski.width, ski.station))
@@ -145,11 +145,9 @@ class _SkiMaker:
         if length is None and self._width is not None:
             length = float(np.ptp(self._width[0])) * MM
         if length is None:
-            raise _missing_error(
-                template(
-                    "The length of the ski is not known. Give --length-mm, or a table with widths from tip to tail."
-                )
-            )
+            raise ParameterError(
+                "The length of the ski is not known. Give --length-mm, or a table with widths from tip to tail."
+            ).tag("missing")
         return length
 
     def _outlined(self) -> tuple[Layout, StationFunction]:
@@ -158,9 +156,9 @@ class _SkiMaker:
         running_share = like.running_length / like.sidecut_length
         if self._width is None:
             if known.widths is None:
-                raise _missing_error(
-                    template("The widths of the ski are not known. Give --widths-mm, or a table with widths.")
-                )
+                raise ParameterError(
+                    "The widths of the ski are not known. Give --widths-mm, or a table with widths."
+                ).tag("missing")
             tip, waist, tail = known.widths
             sidecut = known.sidecut_length or self._sidecut_of_radius(tip, waist, tail)
             middle = TAIL_OVERHANG + sidecut / 2.0
@@ -197,8 +195,8 @@ class _SkiMaker:
         place, width = from_tail[order], self._width[1][order] * MM
         front, rear = place > self._length / 2.0, place < self._length / 2.0
         if not (front.any() and rear.any()):
-            raise _missing_error(
-                template("The table needs widths in front of and behind the middle of the ski. Add rows.")
+            raise ParameterError("The table needs widths in front of and behind the middle of the ski. Add rows.").tag(
+                "missing"
             )
         ends = float(place[front][np.argmax(width[front])]), float(place[rear][np.argmax(width[rear])])
         middle, sidecut = sum(ends) / 2.0, known.sidecut_length or ends[0] - ends[1]
@@ -217,8 +215,8 @@ class _SkiMaker:
     def _boot_of_tables(self) -> float:
         """Distance of the boot from the tail (m) where stations count from the boot and widths reach to the tail."""
         if self._width is None:
-            raise _missing_error(
-                template("The place of the boot is not known. Give --boot-mm, its distance from the tail.")
+            raise ParameterError("The place of the boot is not known. Give --boot-mm, its distance from the tail.").tag(
+                "missing"
             )
         return -float(self._width[0].min()) * MM
 
@@ -226,8 +224,8 @@ class _SkiMaker:
         """Distances from the tail (m)."""
         known = self._measured
         if known.stations_from is None:
-            raise _missing_error(
-                template("The origin of the stations is missing. Add --stations-from tip, tail or boot.")
+            raise ParameterError("The origin of the stations is missing. Add --stations-from tip, tail or boot.").tag(
+                "missing"
             )
         station = station_mm * MM
         if known.stations_from == "boot":
@@ -316,7 +314,3 @@ def stiffness_of_tests(
             "Check span, load and reading, or leave one of the neighbouring tests out."
         ).tag("contradiction", place=float(station[np.argmin(c)]) / MM)
     return Stiffness(station, 1.0 / c, np.sqrt((inverse**2) @ error**2) / c**2)
-
-
-def _missing_error(problem: str) -> ParameterError:
-    return ParameterError(problem).tag("missing")

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -13,8 +11,7 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .checks import GREATEST_SPACING
-from .layout import BaseShape, Layout, StationFunction
+from .layout import GREATEST_SPACING, BaseShape, Layout, StationFunction
 from .ski import Ski
 from .table_file import StationTable, evenly_spread
 
@@ -117,78 +114,61 @@ def _fit_parabola(table: StationTable, layout: Layout) -> _Parabola:
 _SAME_PLACE = 1e-9  # m
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SkiParts:
-    """Known properties of a ski along its stations, each as a function of station (m) in SI.
+def assembled_ski(
+    layout: Layout,
+    *,
+    width: StationFunction,
+    base: BaseShape | StationFunction,
+    bending_stiffness: StationFunction,
+    torsional_stiffness: StationFunction,
+    mass_per_length: StationFunction | None = None,
+    mass: float = 0.0,
+    stations: FloatArray | None = None,
+    like: Ski | None = None,
+    **others: Any,
+) -> Ski:
+    """Tabulate the known properties of a ski densely, each a function of station (m) in SI.
 
-    name, source, layout, base_bevel, edge_width, side_edge, edge_radius, keys: as in `Ski` and `Layout`.
     width, bending_stiffness, torsional_stiffness: as in `Ski`.
     base: its shape, or its height, which may have any value at the boot.
     mass_per_length: as in `Ski`; None: proportional to the width (modelling assumption), with ``mass``.
     mass: mass of the ski (kg); used only without ``mass_per_length``.
     stations: requested stations (m), tip to tail; those of layout and boot are added and gaps above 2.5 mm divided
         evenly.
+    like: a ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest points:
+        tables with the same number of rows, which differ smoothly; None: own stations.
+    others: name, source, edges and keys, as in `Ski`.
     """
+    if like is None:
+        station = _make_grid(layout, np.empty(0) if stations is None else stations)
+    else:
+        station = like.station if stations is not None else moved_stations(like.station, like.layout, layout)
+    widths = width(station)
+    base_height = base(station) if callable(base) else base.height_at(station, layout)
+    if mass_per_length is None:
+        area = -np.trapezoid(widths, station) or 1.0  # without an area the tables are rejected below
+        per_length = widths * (mass / area)
+    else:
+        per_length = mass_per_length(station)
+    return Ski(
+        station=station,
+        width=widths,
+        base_height=base_height - np.interp(0.0, station[::-1], base_height[::-1]),
+        bending_stiffness=bending_stiffness(station),
+        torsional_stiffness=torsional_stiffness(station),
+        mass_per_length=per_length,
+        running_length=layout.running_length,
+        sidecut_length=layout.sidecut_length,
+        sidecut_middle=layout.middle,
+        base=base if isinstance(base, BaseShape) else None,
+        **others,
+    )
 
-    name: str
-    source: str
-    layout: Layout
-    width: StationFunction
-    base: BaseShape | StationFunction
-    bending_stiffness: StationFunction
-    torsional_stiffness: StationFunction
-    mass_per_length: StationFunction | None = None
-    mass: float = 0.0
-    base_bevel: float = 0.0
-    edge_width: float = 0.002
-    side_edge: float = math.pi / 2.0
-    edge_radius: float = 0.0
-    stations: FloatArray | None = None
-    keys: Mapping[str, Any] | None = None
 
-    def assembled(self, *, like: Ski | None = None) -> Ski:
-        """Tabulate the parts densely.
-
-        like: a ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest
-            points: tables with the same number of rows, which differ smoothly; None: own stations.
-        """
-        if like is None:
-            station = self._make_grid()
-        elif self.stations is not None:
-            station = like.station
-        else:
-            station = moved_stations(like.station, like.layout, self.layout)
-        width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
-        base_height = self.base(station) if callable(self.base) else self.base.height_at(station, self.layout)
-        mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
-        if self.mass_per_length is None:
-            area = -np.trapezoid(width, station) or 1.0  # without an area the tables are rejected below
-            mass_per_length = width * (self.mass / area)
-        return Ski(
-            name=self.name,
-            source=self.source,
-            station=station,
-            width=width,
-            base_height=base_height - np.interp(0.0, station[::-1], base_height[::-1]),
-            bending_stiffness=self.bending_stiffness(station),
-            torsional_stiffness=self.torsional_stiffness(station),
-            mass_per_length=mass_per_length,
-            running_length=self.layout.running_length,
-            sidecut_length=self.layout.sidecut_length,
-            base_bevel=self.base_bevel,
-            edge_width=self.edge_width,
-            side_edge=self.side_edge,
-            edge_radius=self.edge_radius,
-            sidecut_middle=self.layout.middle,
-            base=shape,
-            keys=self.keys,
-        )
-
-    def _make_grid(self) -> FloatArray:
-        own_stations = np.empty(0) if self.stations is None else self.stations
-        if own_stations.size and np.max(-np.diff(own_stations)) <= GREATEST_SPACING + _SAME_PLACE:
-            return own_stations
-        return _dense_grid(self.layout, tuple(own_stations.tolist()))
+def _make_grid(layout: Layout, stations: FloatArray) -> FloatArray:
+    if stations.size and np.max(-np.diff(stations)) <= GREATEST_SPACING + _SAME_PLACE:
+        return stations
+    return _dense_grid(layout, tuple(stations.tolist()))
 
 
 @functools.lru_cache(maxsize=16)
@@ -244,18 +224,18 @@ def arc_ski(
     Raises ParameterError: the parts do not fit together or break a rule of `Ski`.
     """
     outline = ArcOutline(layout=layout, tip_width=tip_width, waist_width=waist_width, tail_width=tail_width)
-    return SkiParts(
-        name=name,
-        source=source,
-        layout=layout,
+    return assembled_ski(
+        layout,
         width=outline.width_at,
         base=BaseShape() if base is None else base,
         bending_stiffness=stiffness_table(bending_stiffness, stiffness_station, layout).at,
         torsional_stiffness=stiffness_table(torsional_stiffness, stiffness_station, layout).at,
         mass=mass,
+        name=name,
+        source=source,
         base_bevel=base_bevel,
         edge_width=edge_width,
-    ).assembled()
+    )
 
 
 def stiffness_table(values: npt.ArrayLike, station: npt.ArrayLike | None, layout: Layout) -> StationTable:

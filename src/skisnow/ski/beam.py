@@ -132,16 +132,6 @@ def _places_in_band(dof: bytes) -> tuple[BoolArray, IntArray]:
     return free, (2 * HALF_BANDWIDTH * rows + columns + HALF_BANDWIDTH)[free]
 
 
-def dense(matrix: FloatArray) -> FloatArray:
-    """The same matrix as a dense (size, size) array, for tests."""
-    size = len(matrix)
-    full = np.zeros((size, size))
-    for i in range(size):
-        for j in range(max(0, i - HALF_BANDWIDTH), min(size, i + HALF_BANDWIDTH + 1)):
-            full[i, j] = matrix[i, j - i + HALF_BANDWIDTH]
-    return full
-
-
 def lowest_eigenvalue(stiffness: FloatArray, mass: FloatArray, start: FloatArray) -> float:
     """Smallest λ of K x = λ M x in the span of the start, by subspace iteration.
 
@@ -324,11 +314,6 @@ def element_places(node: FloatArray, local: FloatArray) -> FloatArray:
 def model_nodes(front: float, rear: float, clamp_length: float, elements: int) -> FloatArray:
     """Nodes (m) of the model that `clamped` makes of a ski between these stations, whose clamp is rigid."""
     return _place_nodes(front, rear, clamp_length, elements, bedded=False)
-
-
-def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Deflection (m) and twist (rad) of the base relative to the boot at stations (m), for the unknowns u (size,)."""
-    return base_motion(u, *beam_rows(model, station))
 
 
 def beam_rows(model: ClampedSki, station: npt.ArrayLike) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -1,18 +1,24 @@
-"""The parts of a ski from the keys of its file and from its table; a quantity in both is an error."""
+"""Checked keys of a ski file, and the parts of a ski from them and from its table; a quantity in both is an error."""
 
 from __future__ import annotations
 
+import functools
 import warnings
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, template
-from .assembling import ArcOutline, SkiParts, stiffness_table, width_of_table
-from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, TIP_END, WIDTHS
-from .file_values import FileValues
+from .._support.user_files import read_toml, shown_value
+from ..parameters import InputValue, build_declared, suggest_and_list
+from .assembling import ArcOutline, assembled_ski, stiffness_table, width_of_table
+from .file_keys import BASE, LISTS, RIGID, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
+from .file_values import checked, warn_of_unusual
 from .layout import BaseShape, Layout, StationFunction, layout_of_lengths
 from .monkeycam import monkeycam_shape
 from .ski import Ski
@@ -33,146 +39,171 @@ _TABLE_TOO_LONG: Final = template(
 
 
 @dataclass(frozen=True, slots=True)
-class FileParts:
-    """Parts of a ski, read from its parsed file.
+class FileValues:
+    """The keys and values of one ski file.
 
-    table: the columns of its table by name, empty without one.
+    values: as parsed.
+    said: the same, checked, in SI.
+    table: columns of its table by name; empty without one.
     """
 
-    values: FileValues
-    table: dict[str, StationTable]
+    file: Path
+    values: dict[str, Any]
+    said: SkiFile
+    table: dict[str, StationTable] = field(default_factory=dict)
+
+    def beside(self, key: str) -> Path | None:
+        """Give the path of a file that the key names, counted from this file's folder."""
+        name = getattr(self.said, key)
+        return self.file.parent / name if name else None
+
+    def needed(self, key: str) -> float:
+        """Give a number in SI that the file must have."""
+        number: float | None = getattr(self.said, SKI_KEYS[key].field)
+        if number is None:
+            raise ParameterError("the key {key} is missing. Add it, in the unit that it names.").tag("missing", key=key)
+        return number
+
+    def numbers(self, key: str) -> FloatArray:
+        """Give a list of numbers in SI that the file must have."""
+        numbers = getattr(self.said, SKI_KEYS[key].field)
+        if numbers is None:
+            raise ParameterError("the key {key} is missing. Add a list such as {key} = [100, 440, 100].").tag(
+                "missing", key=key
+            )
+        return np.array(numbers)
+
+    def refuse_together(self, keys: Iterable[str], other: str | Message) -> None:
+        """Raise an error if one of the keys occurs together with another for the same quantity."""
+        for key in keys:
+            if key in self.values:
+                raise ParameterError(
+                    "{key} = {value} is stated together with {other} for the same quantity. Remove one of them."
+                ).tag("contradiction", key=key, value=self.shown(key), other=other)
+
+    def shown(self, key: str) -> str:
+        """The value of a key as the file has it."""
+        return shown_value(self.values[key])
 
     def ski(self, *, like: Ski | None = None) -> Ski:
         """Put the ski together.
 
         like: a ski of nearly the same lengths, whose stations are stretched to this ski; None: own stations.
         """
-        values = self.values
         if self.table.keys() >= set(STIFFNESSES):
-            values.refuse_together(
-                ["stiffness_station_mm"], Message("a table with both stiffnesses"), Message("Remove it.")
-            )
-        layout, width, name = self._outline_from_shape_file() if "shape" in values else self._outline_from_ski_file()
-        said = values.said
+            self.refuse_together(["stiffness_station_mm"], Message("a table with both stiffnesses"))
+        of_shape = "shape" in self.values
+        layout, width, name = self._outline_from_shape_file() if of_shape else self._outline_from_ski_file()
+        said = self.said
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
-        ski = SkiParts(
+        ski = assembled_ski(
+            layout,
             name=said.name or name,
-            source=said.source or f"file {values.file.name}",
-            layout=layout,
+            source=said.source or f"file {self.file.name}",
             width=width,
             base=self._base(),
             bending_stiffness=self._stiffness("EI_N_m2", layout),
             torsional_stiffness=self._stiffness("GJ_N_m2", layout),
             mass_per_length=mass_per_length.at if mass_per_length else None,
-            mass=0.0 if mass_per_length else values.needed("mass_kg"),
+            mass=0.0 if mass_per_length else self.needed("mass_kg"),
             base_bevel=said.base_bevel,
             edge_width=said.edge_width,
             side_edge=said.side_edge,
             edge_radius=said.edge_radius,
             stations=self.table["station_m"].station if self.table else None,
-            keys=None if self.table or "shape" in values else dict(values.values),
-        ).assembled(like=like)
+            keys=None if self.table or of_shape else dict(self.values),
+            like=like,
+        )
         # a stated mass must be the integral of the mass per length
-        mass = self.values.said.mass
+        mass = said.mass
         if mass_per_length and mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
-            allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)
-            self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or remove mass_kg."))
+            raise ParameterError(
+                "mass_kg is {value}; allowed is {mass:.4g}, which the column mass_per_length_kg_per_m integrates to. "
+                "Correct one of them or remove mass_kg."
+            ).tag("out_of_range", value=self.shown("mass_kg"), mass=ski.mass)
         self._warn_of_lengths(ski)
         return ski
 
     def _outline_from_shape_file(self) -> tuple[Layout, StationFunction, str]:
         """Tip, tail and lengths, width along the ski, and name: from a shape file of MonkeyCAM."""
-        values = self.values
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
-        values.refuse_together(outlined, "shape", Message("Remove one of them."))
-        file = values.beside("shape") or values.file
-        name, outline = monkeycam_shape(file, running_length=values.said.running_length)
+        self.refuse_together(outlined, "shape")
+        file = self.beside("shape") or self.file
+        name, outline = monkeycam_shape(file, running_length=self.said.running_length)
         return outline.layout, outline.width_at, name
 
     def _outline_from_ski_file(self) -> tuple[Layout, StationFunction, str]:
         """Tip, tail and lengths, width along the ski, and name: from the ski file's table, otherwise from its keys."""
-        values = self.values
         layout = self._lengths_from_table() if self.table else self._lengths_from_keys()
         if "width_mm" in self.table:
             column = Message("the column {column}", column="width_mm")
-            values.refuse_together((*WIDTHS, TIP_END), column, Message("Remove one of them."))
-            return layout, width_of_table(self.table["width_mm"], layout), values.file.stem
-        tip, waist, tail = (values.needed(key) for key in WIDTHS)
+            self.refuse_together((*WIDTHS, TIP_END), column)
+            return layout, width_of_table(self.table["width_mm"], layout), self.file.stem
+        tip, waist, tail = (self.needed(key) for key in WIDTHS)
         for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
             if waist > width:
-                allowed = Message(
-                    "at most {key}, {width:g}: the waist is the narrowest of the three", key=key, width=width * 1e3
-                )
-                action = Message("Correct it or {key}.", key=key)
-                values.refuse("waist_width_mm", values.values["waist_width_mm"], allowed, action)
-        end = values.said.tip_end_width
+                raise ParameterError(
+                    "waist_width_mm is {value}; allowed is at most {key}, {width:g}: the waist is the narrowest of the "
+                    "three. Correct it or {key}."
+                ).tag("out_of_range", value=self.shown("waist_width_mm"), key=key, width=width * 1e3)
+        end = self.said.tip_end_width
         if end is not None and end > tip:
-            allowed = Message("at most tip_width_mm, {width:g}", width=tip * 1e3)
-            values.refuse(TIP_END, values.values[TIP_END], allowed, Message("Correct one of them."))
+            raise ParameterError(
+                "tip_end_width_mm is {value}; allowed is at most tip_width_mm, {width:g}. Correct one of them."
+            ).tag("out_of_range", value=self.shown(TIP_END), width=tip * 1e3)
         outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end)
-        return layout, outline.width_at, values.file.stem
+        return layout, outline.width_at, self.file.stem
 
     def _lengths_from_keys(self) -> Layout:
-        values = self.values
-        length = values.needed("length_mm")
-        least = _LEAST_LENGTH_IN_WIDTHS * (values.said.tip_width or 0.0)
+        length = self.needed("length_mm")
+        least = _LEAST_LENGTH_IN_WIDTHS * (self.said.tip_width or 0.0)
         if length < least:
-            allowed = Message(
-                "at least {least:.0f}, {factor:g} times the tip width",
-                least=least * 1e3,
-                factor=_LEAST_LENGTH_IN_WIDTHS,
-            )
-            action = Message("Is it in centimetres? Write it in mm.")
-            values.refuse("length_mm", values.values["length_mm"], allowed, action)
+            raise ParameterError(
+                "length_mm is {value}; allowed is at least {least:.0f}, {factor:g} times the tip width. Is it in "
+                "centimetres? Write it in mm."
+            ).tag("out_of_range", value=self.shown("length_mm"), least=least * 1e3, factor=_LEAST_LENGTH_IN_WIDTHS)
         return layout_of_lengths(
             length=length,
-            running_length=values.needed("running_length_mm"),
-            sidecut_length=values.needed("sidecut_length_mm"),
-            tail_overhang=values.said.tail_overhang,
-            boot_position=values.said.boot_position,
+            running_length=self.needed("running_length_mm"),
+            sidecut_length=self.needed("sidecut_length_mm"),
+            tail_overhang=self.said.tail_overhang,
+            boot_position=self.said.boot_position,
         )
 
     def _lengths_from_table(self) -> Layout:
-        values = self.values
-        values.refuse_together(
-            ["tail_overhang_mm"], Message("a table, which reaches from tip to tail"), Message("Remove it.")
-        )
+        self.refuse_together(["tail_overhang_mm"], Message("a table, which reaches from tip to tail"))
         station = self.table["station_m"].station
-        length, reach = values.said.length, float(station[0] - station[-1])
+        length, reach = self.said.length, float(station[0] - station[-1])
         if length is not None and abs(length - reach) > _SAME_LENGTH:
             problem = _TABLE_TOO_SHORT if reach < length else _TABLE_TOO_LONG
             raise ParameterError(problem).tag("contradiction", reach=reach * 1e3, length=length * 1e3)
         return Layout(
             tip=float(station[0]),
             tail=float(station[-1]),
-            middle=-values.said.boot_position,
-            running_length=values.needed("running_length_mm"),
-            sidecut_length=values.needed("sidecut_length_mm"),
+            middle=-self.said.boot_position,
+            running_length=self.needed("running_length_mm"),
+            sidecut_length=self.needed("sidecut_length_mm"),
         )
 
     def _base(self) -> BaseShape | StationFunction:
-        values = self.values
         if "base_height_mm" in self.table:
-            values.refuse_together(
-                BASE, Message("the column {column}", column="base_height_mm"), Message("Remove one of them.")
-            )
+            self.refuse_together(BASE, Message("the column {column}", column="base_height_mm"))
             return self.table["base_height_mm"].at
-        return values.said.base
+        return self.said.base
 
     def _stiffness(self, key: str, layout: Layout) -> StationFunction:
-        values = self.values
-        if values.said.rigid:
-            values.refuse_together(LISTS, "rigid", Message("Remove one of them."))
+        if self.said.rigid:
+            self.refuse_together(LISTS, "rigid")
             if key in self.table:
                 raise ParameterError("the column {key} contradicts rigid = true. Remove one of them.").tag(
                     "contradiction", key=key
                 )
             return lambda station: np.full(np.shape(station), RIGID)
         if key in self.table:
-            values.refuse_together([key], Message("the column {column}", column=key), Message("Remove one of them."))
+            self.refuse_together([key], Message("the column {column}", column=key))
             return self.table[key].at
-        stiffness = values.numbers(key)
-        station = values.numbers("stiffness_station_mm") if "stiffness_station_mm" in values else None
+        stiffness = self.numbers(key)
+        station = self.numbers("stiffness_station_mm") if "stiffness_station_mm" in self.values else None
         try:
             return stiffness_table(stiffness, station, layout).at
         except ParameterError as error:
@@ -187,6 +218,34 @@ class FileParts:
                     RangeWarning(
                         "{file}: {key} is {value:g}, the ski {length:g} mm long; usual are 0.7 to 0.95 of it. Is it "
                         "in mm?"
-                    ).tag("unusual", file=self.values.file, key=key, value=length * 1e3, length=ski.length * 1e3),
+                    ).tag("unusual", file=self.file, key=key, value=length * 1e3, length=ski.length * 1e3),
                     stacklevel=2,
                 )
+
+
+def file_values(path: Path) -> FileValues:
+    """Parse a ski file and check its keys."""
+    return values_of_keys(read_toml(path), path)
+
+
+def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
+    """Check the keys of a ski file that were parsed already; `path`: the file that errors name."""
+    for key in values:
+        if key not in SKI_KEYS:
+            raise ParameterError("{path}: the key {key} is not known. {allowed}").tag(
+                "unknown_name", path=path, key=key, allowed=suggest_and_list(key, SKI_KEYS)
+            )
+    checked_values = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
+    for key, value in checked_values.items():
+        if isinstance(value, tuple):
+            warn_of_unusual(path, {f"{key}[{n}]": element for n, element in enumerate(value, start=1)}, SKI_KEYS[key])
+        elif isinstance(value, float):
+            warn_of_unusual(path, {key: value}, SKI_KEYS[key])
+    of_base = tuple((key, value) for key, value in checked_values.items() if key in BASE)
+    own = {SKI_KEYS[key].field: SKI_KEYS[key].in_si(value) for key, value in checked_values.items() if key not in BASE}
+    return FileValues(path, values, SkiFile(**own, base=_build_base(of_base)))
+
+
+@functools.lru_cache(maxsize=32)
+def _build_base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
+    return build_declared(BaseShape, dict(values))

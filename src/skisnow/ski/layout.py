@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Final, TypeAlias
+from typing import Annotated, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -104,6 +104,17 @@ def layout_of_lengths(
     )
 
 
+class EdgeShape(NamedTuple):
+    """Grinding of an edge: strip of base (rad, m), angle between base and side (rad), radius of the corner (m)."""
+
+    base_bevel: float
+    edge_width: float
+    side_edge: float
+    edge_radius: float
+
+
+GREATEST_SPACING: Final = 2.5e-3
+"""Greatest distance of neighbouring stations (m): linear interpolation of a sidecut is then good to 0.1 micrometre."""
 StationFunction: TypeAlias = Callable[[FloatArray], FloatArray]
 """Function from stations (m) to a quantity of the ski."""
 
@@ -122,22 +133,6 @@ class SkiSections(ShownFields):
     bending_stiffness: FloatArray
     torsional_stiffness: FloatArray
     mass_per_length: FloatArray
-
-    def at(self, station: FloatArray) -> SkiSections:
-        """Sections at other stations (m, any shape) between these, which fall, interpolated linearly."""
-        rising = self.station[::-1]
-
-        def along(table: FloatArray) -> FloatArray:
-            return np.asarray(np.interp(station, rising, table[::-1]))
-
-        return SkiSections(
-            station,
-            along(self.width),
-            along(self.base_height),
-            along(self.bending_stiffness),
-            along(self.torsional_stiffness),
-            along(self.mass_per_length),
-        )
 
 
 SHOVEL_HEIGHT: Final = 0.050

@@ -14,11 +14,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import CM, MM
-from .._support.user_files import read_json
+from .._support.user_files import read_json, shown_value
 from .assembling import ArcOutline
-from .file_values import refuse
 from .layout import layout_of_lengths
 
 STRAIGHTEST: Final = 1000.0
@@ -42,8 +40,10 @@ def monkeycam_shape(path: Path, *, running_length: float | None = None) -> tuple
     edge, waist, taper = (_length(path, board, key) for key in ("effective edge length", "waist width", "taper"))
     radius = _length(path, board, "sidecut radius")
     if not edge / 2.0 < radius <= STRAIGHTEST or not edge > 0.0:
-        allowed = Message("more than half the edge length, at most {limit:g} m", limit=STRAIGHTEST)
-        refuse(path, "board: sidecut radius", board["sidecut radius"], allowed, Message("Correct it."))
+        raise ParameterError(
+            "{path}: board: sidecut radius is {value}; allowed is more than half the edge length, at most {limit:g} m. "
+            "Correct it."
+        ).tag("out_of_range", path=path, value=shown_value(board["sidecut radius"]), limit=STRAIGHTEST)
     nose, tail = _length(path, board, "nose length"), _length(path, board, "tail length")
     layout = layout_of_lengths(
         length=nose + edge + tail,
@@ -73,8 +73,10 @@ def _read_board(path: Path) -> dict[str, Any]:
     form = board.get("edge shape")
     kind = form.get("type") if isinstance(form, dict) else None
     if kind != "Basic Arc":
-        action = Message("Give other side lines as a table of widths.")
-        refuse(path, "board: edge shape: type", kind, "'Basic Arc'", action)
+        raise ParameterError(
+            "{path}: board: edge shape: type is {value}; allowed is 'Basic Arc'. Give other side lines as a table of "
+            "widths."
+        ).tag("out_of_range", path=path, value=shown_value(kind))
     return board
 
 
@@ -83,6 +85,8 @@ def _length(path: Path, board: dict[str, Any], key: str) -> float:
     value = board.get(key)
     read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value).strip())
     if read is None or read[2].lower() not in _UNITS or not abs(float(read[1])) <= _LARGEST:
-        allowed = Message("a number in cm or a text such as '161cm', '2mm', '4in'")
-        refuse(path, f"board: {key}", value, allowed, Message("Correct it."))
+        raise ParameterError(
+            "{path}: board: {key} is {value}; allowed is a number in cm or a text such as '161cm', '2mm', '4in'. "
+            "Correct it."
+        ).tag("out_of_range", path=path, key=key, value=shown_value(value))
     return float(read[1]) * _UNITS[read[2].lower()]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -15,19 +16,24 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import Facts, Shown, amount
 from ..parameters import APART
-from .checks import (
-    STRAIGHT,
-    EdgeShape,
-    require_base_at_boot,
-    require_edge,
-    require_lengths,
-    require_narrow_waist,
-    require_on_ski,
-    require_tables,
-)
-from .layout import BaseShape, Layout, SkiSections
+from .layout import GREATEST_SPACING, BaseShape, EdgeShape, Layout, SkiSections
 
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
+
+STRAIGHT: Final = 1e-7
+"""Depth of a curve (m) below which an edge counts as straight: far below what can be made or measured."""
+_STRETCH: Final = 1.01  # of that distance, where stations move with a length that changes a little
+
+GREATEST_BEVEL: Final = 0.1
+"""Greatest base bevel (rad), 5.7°; skis are ground to 0-2°."""
+
+LEAST_SIDE: Final = math.radians(80.0)
+"""Smallest angle between base and side of a ski (rad); sides are ground to 85-90°."""
+GREATEST_SIDE: Final = math.radians(95.0)
+
+_ROUNDING = 1e-9  # m
+_ZERO_AT_BOOT = 1e-5  # m, a hundredth of a millimetre
+_POSITIVE = ("width", "bending_stiffness", "torsional_stiffness", "mass_per_length")
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True, eq=False, repr=False)
@@ -110,15 +116,8 @@ class Ski(Shown):
             table = np.array(getattr(self, field.name), dtype=float)
             table.flags.writeable = False
             object.__setattr__(self, field.name, table)
-        tables = self._tables
-        require_tables(self.name, tables)
-        require_lengths(
-            self.name, tables, running=self.running_length, sidecut=self.sidecut_length, middle=self.sidecut_middle
-        )
-        widths = self.sidecut_widths
-        require_edge(self.name, self.edge_shape, waist=widths[1])
-        require_narrow_waist(self.name, widths)
-        require_base_at_boot(self.name, float(np.interp(0.0, self.station[::-1], self.base_height[::-1])))
+        with _named_errors(self):
+            _require_sound(self)
 
     @property
     def edge_shape(self) -> EdgeShape:
@@ -136,18 +135,16 @@ class Ski(Shown):
             sidecut_length=self.sidecut_length,
         )
 
-    @property
-    def _tables(self) -> SkiSections:
-        return SkiSections(*(getattr(self, field.name) for field in fields(SkiSections)))
-
     def at(self, station: npt.ArrayLike) -> SkiSections:
         """Give the cross sections at stations (m, any shape), interpolated linearly.
 
         Raises ParameterError: a station is beyond tip or tail.
         """
         where = np.asarray(station, dtype=float)
-        require_on_ski(self.name, self.station, where)
-        return self._tables.at(where)
+        with _named_errors(self):
+            _require_on_ski(self, where)
+        names = [field.name for field in fields(SkiSections)][1:]
+        return SkiSections(where, *map(np.asarray, self.tables_at(where, *names)))
 
     def stiffened(self, factor: float) -> Ski:
         """The ski with EI and GJ times a factor > 0; itself with 1."""
@@ -165,16 +162,12 @@ class Ski(Shown):
 
         Raises ParameterError: the ski has no camber, or its heights were given themselves.
         """
-        if self.base is None or self.base.camber == 0.0:
-            problem = (
-                Message(
-                    "the ski {name} has stated heights of its base, so that its camber is not rounded. Remove it",
-                    name=self.name,
-                )
-                if self.base is None
-                else Message("the ski {name} has no camber to round. Remove it", name=self.name)
-            )
-            raise ParameterError(problem).tag("no_camber")
+        if self.base is None:
+            raise ParameterError(
+                "the ski {name} has stated heights of its base, so that its camber is not rounded. Remove it"
+            ).tag("no_camber", name=self.name)
+        if self.base.camber == 0.0:
+            raise ParameterError("the ski {name} has no camber to round. Remove it").tag("no_camber", name=self.name)
         base = replace(self.base, camber_rounding=length)
         height = base.height_at(self.station, self.layout)
         return replace(
@@ -271,6 +264,113 @@ class Ski(Shown):
         front, rear = self.sidecut_ends
         along = np.linspace(front, rear, _EDGE_POINTS)
         return radius_of_least_squares_circle(along, self.at(along).width / 2.0)
+
+
+@contextmanager
+def _named_errors(ski: Ski) -> Iterator[None]:
+    """Errors that arise inside are of this ski."""
+    try:
+        yield
+    except ParameterError as error:
+        raise error.at(Message("ski {name!r}", name=ski.name)).tag("invalid_ski") from None
+
+
+def _require_sound(ski: Ski) -> None:
+    """Reject a ski whose name is blank, or whose tables, lengths, edges, widths or heights cannot be those of a ski."""
+    _require_tables(ski)
+    _require_on_ski(ski, np.array([ski.layout.middle, 0.0]))
+    widths = ski.sidecut_widths
+    _require_edge(ski.edge_shape, waist=widths[1])
+    _require_narrow_waist(widths)
+    height = float(np.interp(0.0, ski.station[::-1], ski.base_height[::-1]))
+    if abs(height) > _ZERO_AT_BOOT:
+        raise ParameterError(
+            "base_height is {height:.6g} m at the boot; it must be 0 there. Subtract that height."
+        ).tag("invalid_ski", height=height)
+
+
+def _require_on_ski(ski: Ski, station: FloatArray) -> None:
+    """Reject stations (m) beyond tip or tail."""
+    off = ~((station >= ski.station[-1] - _ROUNDING) & (station <= ski.station[0] + _ROUNDING))
+    if np.any(off):
+        raise ParameterError(
+            "station {station:.6g} m is not on the ski: it reaches from {tip:.4f} to {tail:.4f} m from the boot. "
+            "Choose stations on it."
+        ).tag("invalid_ski", station=station[off].flat[0], tip=ski.station[0], tail=ski.station[-1])
+
+
+def _require_tables(ski: Ski) -> None:
+    """Reject a blank name, and tables that are not equally long, finite, falling from tip to tail or above 0."""
+    if not (isinstance(ski.name, str) and ski.name.strip()):  # type: ignore[redundant-expr] # callers without types
+        raise ParameterError("its name is blank. Give it one.").tag("invalid_ski")
+    for name in ("station", "base_height", *_POSITIVE):
+        table: FloatArray = getattr(ski, name)
+        if table.ndim != 1 or table.size < 2 or table.size != ski.station.size:
+            raise ParameterError("{table} has shape {shape}, station {needed}. Give equally long tables.").tag(
+                "invalid_ski", table=name, shape=str(table.shape), needed=str(ski.station.shape)
+            )
+        if not np.isfinite(table).all():
+            row = int(np.argmin(np.isfinite(table)))
+            raise ParameterError("{table}[{row}] is {value}; every value must be finite. Correct it.").tag(
+                "invalid_ski", table=name, row=row, value=table[row]
+            )
+    steps = ski.station[:-1] - ski.station[1:]
+    if steps.min() <= 0:
+        row = int(np.argmax(steps <= 0)) + 1
+        raise ParameterError(
+            "station[{row}] = {station:.6g} m is not below the one before it. List the stations from tip to tail, "
+            "positive in front of the boot."
+        ).tag("invalid_ski", row=row, station=ski.station[row])
+    if steps.max() > _STRETCH * GREATEST_SPACING:
+        raise ParameterError(
+            "stations are up to {spacing:.3g} mm apart; at most 2.5 mm is allowed. Interpolate the tables first, as "
+            "the reader of ski files does."
+        ).tag("invalid_ski", spacing=steps.max() * 1e3)
+    for name in _POSITIVE:
+        table = getattr(ski, name)
+        if table.min() <= 0:
+            row = int(np.argmax(table <= 0))
+            raise ParameterError(
+                "{table} is {value:.6g} at {station:.4f} m from the boot; it must be above 0. Correct it."
+            ).tag("invalid_ski", table=name, value=table[row], station=ski.station[row])
+
+
+def _require_edge(edge: EdgeShape, *, waist: float) -> None:
+    """Reject an edge that cannot be ground so, its width against the waist (m)."""
+    bevel, width, side, radius = edge
+    if not 0.0 <= bevel <= GREATEST_BEVEL:
+        raise ParameterError("base_bevel is {bevel!r} rad; it must be 0 to {limit}. Give it in radians.").tag(
+            "invalid_ski", bevel=bevel, limit=GREATEST_BEVEL
+        )
+    if not 0.0 <= width < waist / 2.0:
+        raise ParameterError(
+            "edge_width is {width!r} m; it must be 0 to half the waist, {limit:.4f} m. Correct it."
+        ).tag("invalid_ski", width=width, limit=waist / 2.0)
+    if not LEAST_SIDE <= side <= GREATEST_SIDE:
+        raise ParameterError("side_edge is {side!r} rad; it must be {low:.4f} to {high:.4f}. Give it in radians.").tag(
+            "invalid_ski", side=side, low=LEAST_SIDE, high=GREATEST_SIDE
+        )
+    largest = width * math.tan(0.5 * (side + bevel))
+    if not 0.0 <= radius <= largest:
+        raise ParameterError(
+            "edge_radius is {radius!r} m; it must be 0 to {largest:.6f} m, so that the rounding is within edge_width. "
+            "Correct it."
+        ).tag("invalid_ski", radius=radius, largest=largest)
+
+
+def _require_narrow_waist(widths: tuple[float, float, float]) -> None:
+    """Reject a waist that is wider than tip or tail (m)."""
+    front, middle, rear = widths
+    if middle > front + _ROUNDING:
+        raise ParameterError(
+            "its waist, {waist:.2f} mm, is wider than its tip, {width:.2f} mm. The waist must be the narrowest of the "
+            "three widths: correct waist or tip."
+        ).tag("invalid_ski", waist=middle * 1e3, width=front * 1e3)
+    if middle > rear + _ROUNDING:
+        raise ParameterError(
+            "its waist, {waist:.2f} mm, is wider than its tail, {width:.2f} mm. The waist must be the narrowest of "
+            "the three widths: correct waist or tail."
+        ).tag("invalid_ski", waist=middle * 1e3, width=rear * 1e3)
 
 
 def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> float:

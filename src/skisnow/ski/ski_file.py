@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any, Final
@@ -19,8 +19,7 @@ from ..parameters import SMALLEST, suggest_and_list
 from ..snow import SnowProperties, published_snow, snow_from_results
 from ..snow.measured_range import with_range_warnings
 from .file_keys import COLUMNS, RIGID, SkiFile
-from .file_parts import FileParts
-from .file_values import file_values, values_of_keys
+from .file_parts import file_values, values_of_keys
 from .ski import Ski
 from .table_file import read_table
 
@@ -125,7 +124,7 @@ def _read_ski_file(path: Path) -> Ski:
     table, shape = values.beside("table"), values.beside("shape")
     columns = read_table(table) if table else {}
     try:
-        return FileParts(values, columns).ski()
+        return replace(values, table=columns).ski()
     except ParameterError as error:
         if any(str(error).startswith(str(file)) for file in (path, shape) if file):
             raise
@@ -144,7 +143,7 @@ def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like:
     """
     values = values_of_keys(dict(keys), path)
     try:
-        ski = FileParts(values, {}).ski(like=like)
+        ski = values.ski(like=like)
     except ParameterError as error:
         raise (error if str(error).startswith(str(path)) else error.at(path)) from error
     MADE_OF_KEYS[ski] = values.said

@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.spreadsheet_text import (
     SEPARATOR_NAMES,
     NoTextError,
@@ -23,10 +22,10 @@ from .._support.spreadsheet_text import (
     named_separator,
     with_decimal_point,
 )
-from .._support.user_files import plain_bytes
+from .._support.user_files import plain_bytes, shown_value
 from ..parameters import suggest_and_list
 from .file_keys import COLUMNS
-from .file_values import checked, refuse, warn_of_unusual
+from .file_values import checked, warn_of_unusual
 
 MOST_BYTES: Final = 1 << 20
 """Most rows of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""
@@ -115,11 +114,11 @@ def _parse_cell(path: Path, line: int, name: str, cell: str, mark: str) -> float
 def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:
     rising = np.flatnonzero(np.diff(station) >= 0)
     if rising.size:
-        place = Message("line {line}, {column}", line=lines[rising[0] + 1], column="station_m")
-        value = float(station[rising[0] + 1])
-        allowed = Message("less than the {before:g} before it", before=station[rising[0]])
-        action = Message("List the rows from tip to tail, positive in front of the boot.")
-        refuse(path, place, value, allowed, action)
+        before, value = station[rising[0] : rising[0] + 2]
+        raise ParameterError(
+            "{path}: line {line}, station_m is {value}; allowed is less than the {before:g} before it. List the rows "
+            "from tip to tail, positive in front of the boot."
+        ).tag("out_of_range", path=path, line=lines[rising[0] + 1], value=shown_value(float(value)), before=before)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

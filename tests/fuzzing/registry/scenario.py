@@ -192,9 +192,9 @@ READERS = (
         name="changes", target="changes", files=lambda: {"changes": _CHANGES}, read=_read_changes,
         mutations=(token, *TOML), covers=("scenario.keys:parse_change",),
     ),
-    single_file("ski.toml", _SKI, _used_ski, TOML, "ski.file_values:file_values"),
+    single_file("ski.toml", _SKI, _used_ski, TOML, "ski.file_parts:file_values"),
     single_file(
-        "ski with table.toml", lambda: _TABLED, _used_ski, TOML, "ski.file_values:file_values", target="ski.toml"
+        "ski with table.toml", lambda: _TABLED, _used_ski, TOML, "ski.file_parts:file_values", target="ski.toml"
     ),
     Reader(
         name="ski table.csv", target="table.csv", files=lambda: _TABLED, mutations=TABLE,

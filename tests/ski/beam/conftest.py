@@ -8,7 +8,9 @@ from scipy.linalg import eigh
 
 from skisnow._support.arrays import FloatArray
 from skisnow.compiled import core
-from skisnow.ski.beam import GAUSS_POINTS, assembled, dense, mass_matrices, stiffness_matrices
+from skisnow.ski.beam import GAUSS_POINTS, assembled, mass_matrices, stiffness_matrices
+
+from .dense import dense
 
 
 @dataclass(frozen=True)

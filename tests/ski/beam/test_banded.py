@@ -16,13 +16,13 @@ from skisnow.ski.beam import (
     assembled,
     curvature_shape,
     deflection_shape,
-    dense,
     lowest_eigenvalue,
     slope_shape,
     twist_shape,
 )
 
 from .conftest import banded_solution, chain, frequencies, observed_order
+from .dense import dense
 
 
 def random_band(size: int, seed: int) -> FloatArray:

@@ -9,9 +9,10 @@ from tests.coded import raises
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski, read_ski
-from skisnow.ski.beam import beam_at, clamped, dense
+from skisnow.ski.beam import clamped
 
 from .conftest import Chain, banded_solution, frequencies, observed_order
+from .dense import beam_at, dense
 
 EI, GJ = 240.0, 110.0
 BENDING_HZ, TORSION_HZ = (20.0, 48.0, 92.0), (96.0, 126.0)
