@@ -243,7 +243,7 @@ def test_a_moment_balance_that_is_none() -> None:
     ],
 )
 def test_beyond_small_deflections_the_answer_says_so(slope: float, twist: float, told: list[str]) -> None:
-    line = SimpleNamespace(greatest_slope=lambda: slope, twist=np.array([0.1, twist]))
+    line = SimpleNamespace(greatest_slope=lambda: slope, bend=(np.zeros(2), np.array([0.1, twist])))
     said = _warnings_of_line(cast("Any", line))
     assert [each for each, start in zip(said, told, strict=True) if not each.startswith(start)] == []
 

@@ -85,7 +85,9 @@ def test_a_load_beyond_the_whole_base_at_the_sinking_depth_sinks_though_nothing_
     model = clamped(ski, 0.3, 20)
     bears = 1e6 * SINKING_DEPTH * 1.6 * 0.065 * math.cos(angle)
     for factor, outcome in ((0.999, "not_converged"), (1.001, "sinks")):
-        conditions = _conditions(ski, snow(1e-3), angle, bears * factor, 0.0, 1.0, False, False)
+        conditions = _conditions(
+            ski, snow(1e-3), angle, bears * factor, 0.0, 1.0, side_force_bending=False, twist=False
+        )
         none = np.zeros(len(model.stations.station))
         solution = Solution(False, 7, np.zeros(model.size), 0.0, 0.0, 0.0, none, none)
         found = equilibrium_of(model, conditions, snow(1e-3), solution)

@@ -292,7 +292,7 @@ def test_circle_through_three_points(radius: float) -> None:
 def test_the_straight_sides_of_a_flat_ski_lie_on_no_circle() -> None:
     ski = plain_ski()
     model = clamped(ski, 0.3, 40)
-    line = EdgeLine(model, 0.0, solved(model, _conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, False, False)))
+    line = EdgeLine(model, 0.0, solved(model, _conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, twist=False)))
     assert line.radius_at_boot() is None
     with pytest.raises(ValueError, match="straight edge line"):
         line.offset_from_circle()

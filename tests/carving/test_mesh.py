@@ -86,7 +86,7 @@ def test_a_tip_in_the_snow_has_no_limit_and_a_shovel_gives_it_one() -> None:
 def carved() -> EdgeLine:
     """At 45 degrees."""
     ski, angle = plain_ski(width=circular_sidecut(13.0)), math.radians(45.0)
-    conditions = _conditions(ski, snow(2.0), angle, 300.0, 5.0, 1.0, True, True)
+    conditions = _conditions(ski, snow(2.0), angle, 300.0, 5.0, 1.0)
     model = clamped(ski, 0.3, 40)
     return EdgeLine(model, angle, solved(model, conditions))
 
@@ -123,10 +123,10 @@ def test_between_stations_the_edge_is_that_of_the_stations() -> None:
     angle = 0.6
     ski = plain_ski(width=lambda s: 0.065 + 0.02 * s**2 * (1.0 + s), base_height=lambda s: 0.01 * s**2 * (1.0 + s))
     model = clamped(ski, 0.3, 20)
-    line = EdgeLine(model, angle, solved(model, _conditions(ski, snow(0.2), angle, 300.0, 5.0, 1.0, True, True)))
+    line = EdgeLine(model, angle, solved(model, _conditions(ski, snow(0.2), angle, 300.0, 5.0, 1.0)))
     assert line.at(line.station) == pytest.approx(line.position, abs=1e-12)
     at = ski.at(line.station)
-    across = at.width / 2.0 * np.cos(angle + line.twist) + (at.base_height + line.deflection) * math.sin(angle)
+    across = at.width / 2.0 * np.cos(angle + line.bend[1]) + (at.base_height + line.bend[0]) * math.sin(angle)
     assert line.position == pytest.approx(across, abs=1e-12)
 
 
@@ -153,12 +153,12 @@ def test_the_greatest_slope_is_that_of_the_running_length(direction: float) -> N
     """0.2 on it; what bends more beyond does not count."""
     ski = plain_ski(running_length=1.2)
     model = clamped(ski, 0.3, 40)
-    line = EdgeLine(model, 0.0, solved(model, _conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, False, False)))
-    line.deflection = direction * 0.2 * line.station
+    line = EdgeLine(model, 0.0, solved(model, _conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, twist=False)))
+    line.bend = direction * 0.2 * line.station, line.bend[1]
     assert line.greatest_slope() == pytest.approx(0.2, rel=1e-9)
     front, rear = ski.contact_points
     assert (front, rear) == pytest.approx((0.6, -0.6))
-    line.deflection = np.where(np.abs(line.station) > 0.6, 3.0, direction * 0.2) * line.station
+    line.bend = np.where(np.abs(line.station) > 0.6, 3.0, direction * 0.2) * line.station, line.bend[1]
     assert line.greatest_slope() == pytest.approx(0.2, rel=1e-9)
 
 

@@ -12,9 +12,9 @@ import pytest
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve, differentiable_carve
-from skisnow.carving.outputs import RefinedCarve, output_growth
+from skisnow.carving.outputs import CarveRequest, output_growth
 from skisnow.carving.result import Equilibrium
-from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives, CarveRequest
+from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives
 from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import GAUSS_POINTS, GAUSS_WEIGHTS, HALF_BANDWIDTH, ClampedSki, clamped
@@ -151,7 +151,7 @@ def moved(request: CarveRequest, near: Solution, name: str, change: float) -> Fl
         by_u, by_border, by_depth, by_force, _ = point.growth(*none, rounding_of_stiffness(model, u))
         u, depth, force = u + by_u, depth + by_depth, force + by_force
         border = tuple(np.add(border, by_border))
-    at = RefinedCarve(model, given, strength, Solution(True, 0, u, *border, depth, force))
+    at = CarveRequest(model, given, strength, Solution(True, 0, u, *border, depth, force), request.elements)
     growths = [output_growth(output, at) for output in OUTPUTS]
     return np.array([np.nan if growth is None else growth.value for growth in growths])
 

@@ -51,8 +51,7 @@ def answer_question(question: CarveQuestion, *, sources: Sources | None = None) 
     ski = question.changed(ski)
     snow = asked_snow(question, sources)
     require_clamp(ski, question.clamp_length_m)
-    edge_angle = question.edge_angle_deg * CARVE_KEYS["edge_angle_deg"].factor
-    equilibrium = _solve_equilibrium(question, ski, snow, edge_angle)
+    equilibrium, edge_angle = _solve_equilibrium(question, ski, snow), question.edge_angle_deg * DEGREE
     _, outside = with_range_warnings(lambda: _warn_outside_ranges(snow, edge_angle, at_rest=question.at_rest))
     return CarveAnswer(
         question, ski, snow, equilibrium, (*warned, *implausible_values(question), *outside, *equilibrium.warnings)
@@ -73,34 +72,12 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
     return with_stress(snow, question.S_f_N_per_mm2)
 
 
-def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_angle: float) -> Equilibrium:
-    stiffness = question.footprint_stiffness_N_per_mm2
-    footprint = None if stiffness is None else stiffness * CARVE_KEYS["footprint_stiffness_N_per_mm2"].factor
-    shared: dict[str, Any] = {"edge_angle": edge_angle, "load": question.load_N, "moment": question.moment_Nm}
+def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties) -> Equilibrium:
+    arguments = question.arguments
     if question.at_rest or question.unloading_ratio is None:
-        return rest(
-            ski,
-            snow,
-            **shared,
-            clamp_length=question.clamp_length_m,
-            footprint_stiffness=footprint,
-            twist=question.twist,
-            elements=question.elements,
-        )
-    return carve(
-        ski,
-        snow,
-        **shared,
-        unloading_ratio=question.unloading_ratio,
-        clamp_length=question.clamp_length_m,
-        footprint_stiffness=footprint,
-        side_force_bending=question.side_force_bending,
-        side_force_spread=question.side_force_spread,
-        groove=question.groove,
-        moment_balance=question.moment_balance,
-        twist=question.twist,
-        elements=question.elements,
-    )
+        without = ("unloading_ratio", "side_force_bending", "side_force_spread", "groove", "moment_balance")
+        return rest(ski, snow, **{name: value for name, value in arguments.items() if name not in without})
+    return carve(ski, snow, **arguments)
 
 
 def _warn_outside_ranges(snow: SnowProperties, edge_angle: float, *, at_rest: bool) -> None:

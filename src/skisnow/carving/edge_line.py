@@ -48,24 +48,15 @@ class EdgeLine:
         self.station = model.stations.station
 
     @functools.cached_property
-    def _deflection_and_twist(self) -> tuple[FloatArray, FloatArray]:
+    def bend(self) -> tuple[FloatArray, FloatArray]:
+        """Deflection (m) and twist (rad) at the stations."""
         return beam_at_stations(self._model, self._u)
-
-    @functools.cached_property
-    def deflection(self) -> FloatArray:
-        """Deflection at the stations (m)."""
-        return self._deflection_and_twist[0]
-
-    @functools.cached_property
-    def twist(self) -> FloatArray:
-        """Twist at the stations (rad)."""
-        return self._deflection_and_twist[1]
 
     @functools.cached_property
     def position(self) -> FloatArray:
         """Position of the edge at the stations (m)."""
         stations = self._model.stations
-        return self.across(stations.width, stations.base_height, *self._deflection_and_twist)
+        return self.across(stations.width, stations.base_height, *self.bend)
 
     def at(self, station: npt.ArrayLike) -> FloatArray:
         """Position (m) of the edge at stations (m)."""
@@ -172,7 +163,7 @@ class EdgeLine:
         """Greatest slope of the bent ski against the boot, over the running length."""
         front, rear = self._model.ski.contact_points
         inside = (self.station <= front) & (self.station >= rear)
-        return float(np.max(np.abs(np.gradient(self.deflection[inside], self.station[inside]))))
+        return float(np.max(np.abs(np.gradient(self.bend[0][inside], self.station[inside]))))
 
 
 @functools.lru_cache(maxsize=128)

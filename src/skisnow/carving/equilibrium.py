@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
 
@@ -22,8 +22,9 @@ from ..snow.properties import SnowProperties
 from .checks import require_choices, require_kinds, require_ranges, require_strength, require_within, unloading_ratio_of
 from .edge_line import EdgeLine
 from .laws import SnowLaws, equivalent_snow, snow_laws
+from .outputs import CarveRequest
 from .result import Equilibrium, equilibrium_of, radius_at_boot
-from .sensitivity import CarveDerivatives, CarveRequest
+from .sensitivity import CarveDerivatives
 from .solve import RIGID_PLASTIC, Conditions, Solution, solved
 
 if TYPE_CHECKING:
@@ -145,10 +146,11 @@ def carve(
     if laws is None or not (laws.shear is not None or laws.along_base_normal):
         require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
-    forms = side_force_bending, twist, side_force_spread, moment_balance
-    conditions = _with_laws(
-        laws, ski, _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
-    )
+    conditions = _conditions(
+        ski, snow, edge_angle, load, moment, ratio, side_force_bending=side_force_bending, twist=twist,
+        side_force_spread=side_force_spread, moment_balance=moment_balance,
+    )  # fmt: skip
+    conditions = _with_laws(laws, ski, conditions)
     find = solved if groove == "edge" else _solve_with_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -174,23 +176,20 @@ def differentiable_carve(
     unloading_ratio: float | None = None,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
-    side_force_bending: bool = True,
-    side_force_spread: SideForceSpread = "depth",
-    moment_balance: MomentBalance = "boot",
-    twist: bool = True,
     elements: int = ELEMENTS,
     near: Solution | None = None,
+    **forms: Any,
 ) -> CarveDerivatives | None:
     """Refined equilibrium of `carve` with its derivatives, without the answer's other numbers; None: not converged.
 
-    Arguments as in `carve`; `near`: a solution of nearly the same question, which is tried first.
+    Arguments as in `carve`, `forms` being those of `_conditions`; `near`: a solution of nearly the same question, which
+    is tried first.
     """
     ratio = _unloading_ratio(snow, unloading_ratio, None)
     require_ranges(edge_angle, load, ratio, moment)
     require_strength(snow)
     model = clamped(ski, clamp_length, elements)
-    forms = side_force_bending, twist, side_force_spread, moment_balance
-    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, ratio, **forms)
     solution = solved(model, conditions, near=near if near is not None and len(near.u) == model.size else None)
     if not solution.converged:
         return None
@@ -248,7 +247,8 @@ def rest(
     require_ranges(edge_angle, load, 1.0, moment)
     require_within(ski, load, moment)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
-    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, side_force_bending=False, twist=twist)
+    conditions = conditions._replace(side_force=0.0)
     return equilibrium_of(model, conditions, snow, solved(model, conditions))
 
 
@@ -277,8 +277,9 @@ def _conditions(
     load: float,
     moment: float,
     unloading_ratio: float,
-    side_force_bending: bool,
-    twist: bool,
+    *,
+    side_force_bending: bool = True,
+    twist: bool = True,
     side_force_spread: SideForceSpread = "depth",
     moment_balance: MomentBalance = "boot",
 ) -> Conditions:
@@ -286,7 +287,7 @@ def _conditions(
     return Conditions(
         edge_angle=edge_angle,
         hardness=snow.snow_hardness,
-        excess=snow.snow_hardness * (unloading_ratio - 1.0),
+        excess=snow.snow_hardness * (min(unloading_ratio, RIGID_PLASTIC) - 1.0),
         load=load,
         moment=moment,
         side_force=load * math.tan(edge_angle),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -23,13 +23,15 @@ AT_BOOT: Final = np.array([[BOOT_REACH], [0.0], [-BOOT_REACH]])
 _NEAR: Final = 1e-7  # m, over which the slope of the edge line is taken
 
 
-class RefinedCarve(NamedTuple):
-    """Equilibrium of a carve, solved to the last digits; `strength`: S_f (N/m²)."""
+@dataclass(frozen=True, slots=True, eq=False)
+class CarveRequest:
+    """Ski, snow and conditions of an equilibrium, with its solution; `strength`: S_f (N/m²)."""
 
     model: ClampedSki
     conditions: Conditions
     strength: float | None
     solution: Solution
+    elements: int
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -56,22 +58,9 @@ class OutputGrowth:
 
     def scaled(self, unit: float) -> OutputGrowth:
         """The same in another unit of the output."""
-
-        def each(column: FloatArray | None) -> FloatArray | None:
-            return None if column is None else column / unit
-
-        return OutputGrowth(
-            value=self.value / unit,
-            depth=each(self.depth),
-            force=each(self.force),
-            weight=each(self.weight),
-            place=each(self.place),
-            edge_angle=self.edge_angle / unit,
-            load=self.load / unit,
-            strength=self.strength / unit,
-            edge=self.edge,
-            edge_by=self.edge_by / unit,
-        )
+        parts = [(part.name, getattr(self, part.name)) for part in fields(self) if part.name != "edge"]
+        divided: dict[str, Any] = {name: value / unit for name, value in parts if value is not None}
+        return replace(self, **divided)
 
     def by_unknowns(self, model: ClampedSki) -> FloatArray:
         """Derivatives by the unknowns of the beam (size,)."""
@@ -103,7 +92,7 @@ def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def _radius_over(
-    at: RefinedCarve, x: FloatArray, weight: float | FloatArray = 1.0, *, moves: bool = False
+    at: CarveRequest, x: FloatArray, weight: float | FloatArray = 1.0, *, moves: bool = False
 ) -> tuple[OutputGrowth, FloatArray] | None:
     """Derivatives of the radii of circles through the edge at (3, k) places, times a weight, and by the places."""
     angle = at.conditions.edge_angle
@@ -129,12 +118,12 @@ def _radius_over(
     return growth, by_x
 
 
-def _radius_at_boot(at: RefinedCarve) -> OutputGrowth | None:
+def _radius_at_boot(at: CarveRequest) -> OutputGrowth | None:
     circle = _radius_over(at, AT_BOOT)
     return None if circle is None else circle[0]
 
 
-def _radius_of_chord(at: RefinedCarve) -> OutputGrowth | None:
+def _radius_of_chord(at: CarveRequest) -> OutputGrowth | None:
     """Radius (m) of the circle through boot and contact ends, with derivatives; None without a circle."""
     ends = _contact_ends(at)
     if ends is None:
@@ -144,7 +133,7 @@ def _radius_of_chord(at: RefinedCarve) -> OutputGrowth | None:
     return None if circle is None else _with_ends(circle[0], ends, float(circle[1][0, 0]), float(circle[1][2, 0]))
 
 
-def _radius_median(at: RefinedCarve) -> OutputGrowth | None:
+def _radius_median(at: CarveRequest) -> OutputGrowth | None:
     ends = _contact_ends(at)
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
     circles = None if ends is None else line.median_circles(ends[0].value, ends[1].value)
@@ -164,7 +153,7 @@ def _with_ends(
     return replace(growth, depth=depth, place=place)
 
 
-def _contact_ends(at: RefinedCarve) -> tuple[OutputGrowth, OutputGrowth] | None:
+def _contact_ends(at: CarveRequest) -> tuple[OutputGrowth, OutputGrowth] | None:
     """Stations at which the depth of the edge passes zero, front first; None where the contact reaches tip or tail."""
     depth, station = at.solution.edge_depth, at.model.stations.station
     below = np.flatnonzero(depth > 0.0)
@@ -182,7 +171,7 @@ def _contact_ends(at: RefinedCarve) -> tuple[OutputGrowth, OutputGrowth] | None:
     return end(int(below[0]), int(below[0]) - 1), end(int(below[-1]), int(below[-1]) + 1)
 
 
-def _contact_length(at: RefinedCarve) -> OutputGrowth | None:
+def _contact_length(at: CarveRequest) -> OutputGrowth | None:
     ends = _contact_ends(at)
     if ends is None:
         return None
@@ -195,24 +184,24 @@ def _mask_of_largest(values: FloatArray) -> FloatArray:
     return np.asarray(np.eye(1, len(values), int(np.argmax(values)))[0])
 
 
-def _largest_depth(at: RefinedCarve) -> OutputGrowth | None:
+def _largest_depth(at: CarveRequest) -> OutputGrowth | None:
     depth = at.solution.edge_depth
     return OutputGrowth(value=float(depth.max()), depth=_mask_of_largest(depth))
 
 
-def _largest_force(at: RefinedCarve) -> OutputGrowth | None:
+def _largest_force(at: CarveRequest) -> OutputGrowth | None:
     force = at.solution.force_per_length
     return OutputGrowth(value=float(force.max()), force=_mask_of_largest(force))
 
 
-def _deflection_at_boot(at: RefinedCarve) -> OutputGrowth | None:
+def _deflection_at_boot(at: CarveRequest) -> OutputGrowth | None:
     x = np.array([BOOT_REACH])
     by = np.array([[0.0], [0.0], [1.0], [0.0]])
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
     return OutputGrowth(value=float(line.sections(x)[2][0]), edge=x, edge_by=by)
 
 
-def _grip_utilisation(at: RefinedCarve) -> OutputGrowth | None:
+def _grip_utilisation(at: CarveRequest) -> OutputGrowth | None:
     weight, depth, conditions = at.model.stations.weight, at.solution.edge_depth, at.conditions
     if at.strength is None or conditions.side_force == 0.0:
         return None
@@ -229,7 +218,7 @@ def _grip_utilisation(at: RefinedCarve) -> OutputGrowth | None:
     )
 
 
-OUTPUTS: Final[dict[str, tuple[Callable[[RefinedCarve], OutputGrowth | None], float, str]]] = {
+OUTPUTS: Final[dict[str, tuple[Callable[[CarveRequest], OutputGrowth | None], float, str]]] = {
     "turn_radius_boot_m": (_radius_at_boot, 1.0, "circle through the edge at the boot and 0.4 m before and behind"),
     "turn_radius_chord_m": (_radius_of_chord, 1.0, "circle through the edge at the boot and both ends of the contact"),
     "turn_radius_median_m": (_radius_median, 1.0, "median over the contact of circles through 0.2 m of the edge"),
@@ -246,7 +235,7 @@ FORCE_ALONG_EDGE: Final = "force_along_edge_N_per_m"
 """Goal for the force per length at several places."""
 
 
-def output_growth(name: str, at: RefinedCarve) -> OutputGrowth | None:
+def output_growth(name: str, at: CarveRequest) -> OutputGrowth | None:
     """An output in the unit of its name; None where it does not exist."""
     compute, unit, _ = OUTPUTS[name]
     growth = compute(at)

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final, Literal
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import N_PER_MM3, in_degrees_if_radians
+from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3, in_degrees_if_radians
 from ..parameters import Allowed, Label, Quantity, own_quantities, require_declared, suggest_and_list
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
@@ -232,6 +232,21 @@ class CarveQuestion:
     def as_dict(self) -> dict[str, Any]:
         """The inputs under their names."""
         return asdict(self)
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """The inputs as arguments of `carve`, in SI; only some of them matter at rest."""
+        stiffness = self.footprint_stiffness_N_per_mm2
+        names = ("side_force_bending", "side_force_spread", "groove", "moment_balance", "twist", "elements")
+        return {
+            "edge_angle": self.edge_angle_deg * DEGREE,
+            "load": self.load_N,
+            "moment": self.moment_Nm,
+            "unloading_ratio": self.unloading_ratio,
+            "clamp_length": self.clamp_length_m,
+            "footprint_stiffness": None if stiffness is None else stiffness * N_PER_MM2,
+            **{name: getattr(self, name) for name in names},
+        }
 
 
 CARVE_KEYS: Final = {key.name: key for key in own_quantities(CarveQuestion)}

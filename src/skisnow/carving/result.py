@@ -17,7 +17,8 @@ from .._support.units import MM, Facts, Shown, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine
-from .sensitivity import CarveDerivatives, CarveRequest, Sensitivity
+from .outputs import CarveRequest
+from .sensitivity import CarveDerivatives, Sensitivity
 from .solve import Conditions, Solution
 
 Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
@@ -249,7 +250,7 @@ def equilibrium_of(
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
     below = depth > 0.0
-    limit = _side_force_limit(conditions, snow, solution, weight, conditions.edge_angle + line.twist)
+    limit = _side_force_limit(conditions, snow, solution, weight, conditions.edge_angle + line.bend[1])
     holds = _edge_holds(conditions, limit)
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
@@ -279,8 +280,8 @@ def equilibrium_of(
         station=station,
         edge_depth=depth,
         force_per_length=force,
-        bending=line.deflection,
-        twist=line.twist,
+        bending=line.bend[0],
+        twist=line.bend[1],
         edge_line=line.position,
         residual_force=float(weight @ force) - conditions.load,
         residual_moment=conditions.pitch_of_force * of_force + conditions.pitch_of_shear * of_shear - conditions.moment,
@@ -335,7 +336,7 @@ def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> 
 
 def _warnings_of_line(line: EdgeLine) -> tuple[str, ...]:
     warnings = []
-    slope, twist = line.greatest_slope(), float(np.max(np.abs(line.twist)))
+    slope, twist = line.greatest_slope(), float(np.max(np.abs(line.bend[1])))
     if slope > LARGE_SLOPE:
         warnings.append(
             f"the ski bends to a slope of {slope:.2f}: beyond {LARGE_SLOPE} beams of small deflection are inexact"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,7 +18,7 @@ from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import suggest_and_list
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
-from .outputs import OUTPUTS, OutputGrowth, RefinedCarve, output_growth
+from .outputs import OUTPUTS, CarveRequest, OutputGrowth, output_growth
 from .shape import Shape, ShapeGradient, beam_gradients, bent_by, growth_by_tables, shape_growth, widest_station
 from .solve import Solution, refined, solved
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ..compiled import core
     from ..ski.beam import ClampedSki
     from ..snow.properties import SnowProperties
-    from .solve import Conditions
 
 
 CONDITIONS: Final = (
@@ -72,17 +71,6 @@ class Sensitivity:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CarveRequest:
-    """Ski, snow and conditions of an equilibrium."""
-
-    model: ClampedSki
-    conditions: Conditions
-    strength: float | None
-    solution: Solution
-    elements: int
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class _ParameterDerivatives:
     """Derivatives of the equations' inputs (conditions, strength, ski) by one parameter, per its unit."""
 
@@ -120,11 +108,12 @@ class CarveDerivatives:
     """Derivatives at one equilibrium; quantities that several outputs and parameters need are computed once.
 
     request: The request of a carve with the groove along the edge and numbers for the snow.
+    at: The same with its solution to the last digits.
     """
 
     request: CarveRequest
     point: core.CarvePoint = field(init=False)
-    at: RefinedCarve = field(init=False)
+    at: CarveRequest = field(init=False)
     _directions: dict[str, _ParameterDerivatives] = field(default_factory=dict)
     _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
     _outputs: dict[str, OutputGrowth | None] = field(default_factory=dict)
@@ -135,7 +124,7 @@ class CarveDerivatives:
         self.point = refined(request.model, request.conditions, request.solution)
         _, u, (depth, slope, stress), edge_depth, force = self.point.state()
         solution = Solution(True, 0, u, depth, slope, stress, edge_depth, force)
-        self.at = RefinedCarve(request.model, request.conditions, request.strength, solution)
+        self.at = replace(request, solution=solution)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -145,13 +134,8 @@ class CarveDerivatives:
     @property
     def everyday_parameters(self) -> tuple[str, ...]:
         """Turn and snow, the ski's widths and camber, factors of its sidecut and stiffness."""
-        everyday = (
-            *CONDITIONS,
-            *(f"ski.{key}" for key in LINEAR),
-            "edit.sidecut_depth",
-            "edit.EI_N_m2",
-            "edit.GJ_N_m2",
-        )
+        factors = ("edit.sidecut_depth", "edit.EI_N_m2", "edit.GJ_N_m2")
+        everyday = (*CONDITIONS, *(f"ski.{key}" for key in LINEAR), *factors)
         return tuple(name for name in self.parameters if name in everyday)
 
     def value(self, parameter: str) -> float:
@@ -247,11 +231,8 @@ class CarveDerivatives:
 
     def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
         """Derivatives of `force_at` by a parameter, per its unit; stations may move with it."""
-        force, rising, shape = (
-            self.at.solution.force_per_length[::-1],
-            self._rising_stations,
-            self._direction(parameter).shape,
-        )
+        force, rising = self.at.solution.force_per_length[::-1], self._rising_stations
+        shape = self._direction(parameter).shape
         out = np.interp(place, rising, self.force_growth(parameter)[::-1])
         if shape is None or not shape.moves:
             return out

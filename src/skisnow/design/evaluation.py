@@ -169,12 +169,9 @@ def carve_at(
     ski: Ski, question: CarveQuestion, snow: SnowProperties, *, near: Solution | None = None
 ) -> CarveDerivatives | None:
     """Refined equilibrium of a question for this ski on this snow; None: not converged."""
-    return differentiable_carve(
-        ski, snow, edge_angle=math.radians(question.edge_angle_deg), load=question.load_N,
-        unloading_ratio=question.unloading_ratio, moment=question.moment_Nm, clamp_length=question.clamp_length_m,
-        side_force_bending=question.side_force_bending, side_force_spread=question.side_force_spread,
-        moment_balance=question.moment_balance, twist=question.twist, elements=question.elements, near=near,
-    )  # fmt: skip
+    arguments = question.arguments
+    del arguments["groove"], arguments["footprint_stiffness"]  # a task has none
+    return differentiable_carve(ski, snow, **arguments, near=near)
 
 
 REACHED: Final = 1e-6
