@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from itertools import pairwise
 from typing import Any, Final, Literal, TypeAlias
 
@@ -198,8 +198,16 @@ def run_score(run: Run) -> Score:
 
 
 @dataclass(frozen=True, slots=True)
+class LinePoint:
+    """Input of a worker: the line, and the position in the unit cube that it came from."""
+
+    line: RacingLine
+    place: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Racer:
-    """Gives the score of a line's numbers, as a row.
+    """Function from a point of the search to its row; for worker processes.
 
     scenario: with course and skier.
     model: "skier": a whole simulated run; "point": a mass on the line.
@@ -218,43 +226,17 @@ class Racer:
             raced = run_score(ski_line(self.scenario, line))
         return with_room(raced, self.room)
 
-
-@dataclass(frozen=True, slots=True)
-class LinePoint:
-    """Input of a worker: the line, and the position in the unit cube that it came from."""
-
-    line: RacingLine
-    place: tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ScoredLine:
-    """Function from a point of the search to its row; for worker processes."""
-
-    racer: Racer
-
     def __call__(self, point: LinePoint) -> dict[str, Any]:
         """The score with the place and the numbers of all turns."""
-        result = self.racer.score(point.line)
-        return {
-            "place": list(point.place),
-            "value": result.value,
-            "time": result.time,
-            "passed": result.passed,
-            "words": result.words,
-            "gates": [list(gate) for gate in result.gates],
-            "margins": list(result.margins),
-            "turns": [[getattr(turn, name) for name in NUMBERS] for turn in point.line.turns],
-        }
+        score = asdict(self.score(point.line))
+        return {"place": list(point.place), **score, "turns": [list(astuple(turn)) for turn in point.line.turns]}
 
 
 def score_in(row: dict[str, Any]) -> Score:
     """The score of a row."""
+    values = {field.name: row[field.name] for field in fields(Score)}
     gates = tuple((outcome, time) for outcome, time in row["gates"])
-    margins = tuple(row["margins"])
-    return Score(
-        value=row["value"], time=row["time"], passed=row["passed"], words=row["words"], gates=gates, margins=margins
-    )
+    return Score(**values | {"gates": gates, "margins": tuple(row["margins"])})
 
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:

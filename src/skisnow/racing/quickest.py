@@ -16,7 +16,7 @@ from .._support.processes.kept_rows import KeptRows
 from .._support.units import Facts, Shown, amount
 from ..scenario import Scenario
 from .line import RacingLine, course_of, first_gates, follower_line, skier_of
-from .point import Racer, RacerModel, ScoredLine, score_in, turns_in
+from .point import Racer, RacerModel, score_in, turns_in
 from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, require_cmaes
 from .windows import RANGES, Progress, Search, Windows, WindowSettings
@@ -183,7 +183,7 @@ def quickest_line(
     rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
     advice = Message("Finished evaluations are kept. Start again, with fewer workers.")
     try:
-        with Pool(ScoredLine(racer), worker_count(workers), advice=advice, executor=executor) as pool:
+        with Pool(racer, worker_count(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, rows, [])
             how = WindowSettings(search, evaluations, population, spread, settled, seed, tell)
             kinds = len(RANGES) - (model == "point" or not skier_of(scenario).brakes_to)

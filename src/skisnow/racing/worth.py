@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final, get_args
@@ -24,7 +25,7 @@ from ..snow import SnowProperties
 from ..snow.mean_snow import drawn_snows
 from ..track.course.gates_table import GateGap, compare_gates
 from .line import RacingLine, skier_of
-from .point import LinePoint, Racer, RacerModel, ScoredLine, score_in
+from .point import LinePoint, Racer, RacerModel, score_in
 from .score import Score
 
 AS_IT_IS: Final = "as it is"
@@ -152,7 +153,7 @@ def compare_variants(
     tell = progress or (lambda _: None)
     try:
         rows = run_batch(
-            points, ScoredScenario(model), kept=finished_rows, workers=workers, executor=executor,
+            points, partial(_race, model=model), kept=finished_rows, workers=workers, executor=executor,
             progress=lambda done, total: tell(f"race {done} of {total}"),
         )  # fmt: skip
     finally:
@@ -166,16 +167,10 @@ def compare_variants(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class ScoredScenario:
-    """Function from a scenario and a line to the row of its race; for worker processes."""
-
-    model: RacerModel
-
-    def __call__(self, point: tuple[Scenario, RacingLine]) -> dict[str, Any]:
-        """The score."""
-        scenario, line = point
-        return ScoredLine(Racer(scenario, self.model))(LinePoint(line, ()))
+def _race(point: tuple[Scenario, RacingLine], model: RacerModel) -> dict[str, Any]:
+    """Row of the race of a scenario on a line."""
+    scenario, line = point
+    return Racer(scenario, model)(LinePoint(line, ()))
 
 
 def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
