@@ -190,7 +190,7 @@ def snow_forces(dynamics: Dynamics) -> ContactForces:
     rotation, body = dynamics.rotation, dynamics.body
     boots = np.array([dynamics.position + rotation @ ski.boot for ski in body.skis])
     axes = np.array([rotation @ ski.axes.T for ski in body.skis])
-    beams = [nodes_of(ski, bend) for ski, bend in zip(body.skis, dynamics.beam_dofs, strict=True)]
+    beams = [nodes_of(ski, bend) for ski, bend in zip(body.skis, dynamics.part("beam_dofs"), strict=True)]
     return dynamics.contact.force(boots, axes, np.zeros((len(boots), 6)), 0.0, beam_dofs=beams)
 
 
@@ -203,7 +203,7 @@ def left_over(dynamics: Dynamics) -> tuple[FloatArray, list[FloatArray]]:
     for k, ski in enumerate(body.skis):
         force, moment = rotation.T @ snow.wrench[k, :3], rotation.T @ snow.wrench[k, 3:]
         total += np.concatenate([force, moment + np.cross(ski.boot, force)])
-        of_skis.append(_on_ski(ski, weight, dynamics.beam_dofs[k], snow.beam_loads[k]))
+        of_skis.append(_on_ski(ski, weight, dynamics.part("beam_dofs")[k], snow.beam_loads[k]))
     return total, of_skis
 
 

@@ -26,7 +26,7 @@ def test_rests_on_all_its_skis(skis: int, body_on: Callable[[Scenario], Body]) -
     body = body_on(FLAT)
     dynamics = sledge(FLAT, body=body)
     assert dynamics.find_equilibrium() < 1e-9
-    assert dynamics.beam_dofs.shape[0] == len(body.skis) == skis
+    assert dynamics.part("beam_dofs").shape[0] == len(body.skis) == skis
     normal = snow_forces(dynamics).wrench[:, 2]
     weight = -body.mass * body.gravity[2]
     assert normal.sum() == pytest.approx(weight, rel=1e-4)  # a pitch of 0.01 lets 5e-5 of it act along
@@ -52,10 +52,10 @@ def test_glides_straight(skis: int, body_on: Callable[[Scenario], Body]) -> None
     mu = FLAT.contact.friction
     free = speed * duration + 0.5 * (body.gravity[0] + mu * body.gravity[2]) * duration**2
     assert 0.9 * free < dynamics.position[0] < free
-    friction, normal = dynamics.work[1], dynamics.work[2]
+    friction, normal = dynamics.part("work")[1], dynamics.part("work")[2]
     assert friction == pytest.approx(-mu * body.mass * body.gravity[2] * dynamics.position[0], rel=0.02)
     assert normal < 0.0
-    sums = [-np.trapezoid(dynamics.along(k)[1], dynamics.contact.runners[k].nodes) for k in range(skis)]
+    sums = [-np.trapezoid(dynamics.part("along")[k][1], dynamics.contact.runners[k].nodes) for k in range(skis)]
     assert sum(sums) == pytest.approx(-body.mass * body.gravity[2], rel=0.2)
 
 

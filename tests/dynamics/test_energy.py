@@ -30,13 +30,13 @@ CASES: Final = {
 
 def accounts(dynamics: Dynamics) -> FloatArray:
     """Kinetic, potential, elastic in the skis, taken by shear and friction, not given by the snow, air, damping (J)."""
-    shear, friction, normal, drag, damping, _ = dynamics.work
-    return np.array([*dynamics.energies, shear, friction, -normal, drag, damping])
+    shear, friction, normal, drag, damping, _ = dynamics.part("work")
+    return np.array([*dynamics.part("energies"), shear, friction, -normal, drag, damping])
 
 
 def in_snow(dynamics: Dynamics) -> float:
     """Elastic in the snow, and lost in grooves (J)."""
-    return dynamics.snow_energies[0] + dynamics.contact.groove_energy
+    return dynamics.part("snow_energies")[0] + dynamics.contact.groove_energy
 
 
 @pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
@@ -52,7 +52,7 @@ def test_the_balance_closes(changes: dict[str, float]) -> None:
     assert turned_over > 400.0
     assert abs(moved.sum()) < SHARE * turned_over
     shear, friction, drag, damping = moved.sum(axis=0)[[3, 4, 6, 7]]
-    assert shear > dynamics.snow_energies[1]
+    assert shear > dynamics.part("snow_energies")[1]
     assert min(friction, drag, damping) > 0.0
 
 
@@ -70,7 +70,7 @@ def test_what_the_snow_takes_is_in_its_grooves(hardness: float, within: float) -
     assert dynamics.advance(DURATION) is Ended.REACHED
     kept = in_snow(dynamics) - before
     assert kept > 0.5
-    assert -dynamics.work[2] == pytest.approx(kept, rel=within)
+    assert -dynamics.part("work")[2] == pytest.approx(kept, rel=within)
 
 
 # What the snow stores, what skis lose to it, and what an edge gives back
@@ -94,8 +94,8 @@ def moments(changes: dict[str, Any], count: int = 30) -> dict[str, FloatArray]:
     for n in range(count):
         if n > 0 and dynamics.advance(INTERVAL * n) != 0:
             break
-        shear, rubbed, normal, *_ = dynamics.work
-        rows.append((shear, rubbed, normal, *dynamics.snow_energies, *dynamics.snow_losses))
+        shear, rubbed, normal, *_ = dynamics.part("work")
+        rows.append((shear, rubbed, normal, *dynamics.part("snow_energies"), *dynamics.part("snow_losses")))
     stores = ("pressure", "held", "stuck", "delayed")
     names = ("work", "rubbed", "normal", *stores, "penetration", "shear", "friction", "rate", "owed")
     return dict(zip(names, np.array(rows).T, strict=True))

@@ -35,7 +35,7 @@ def test_boots_that_stay_are_fixed_boots() -> None:
         if moves:
             dynamics.move_boots(stays())
         assert dynamics.find_equilibrium() < 1e-9
-        runs.append((dynamics, dynamics.position, dynamics.beam_dofs))
+        runs.append((dynamics, dynamics.position, dynamics.part("beam_dofs")))
     assert runs[0][1] == pytest.approx(runs[1][1], abs=1e-13)
     assert runs[0][2] == pytest.approx(runs[1][2], abs=1e-12)
     for dynamics, *_ in runs:
@@ -43,7 +43,7 @@ def test_boots_that_stay_are_fixed_boots() -> None:
         assert dynamics.advance(0.2) is Ended.REACHED
     assert runs[0][0].position == pytest.approx(runs[1][0].position, abs=2e-6)
     assert runs[0][0].boot_wrench == pytest.approx(runs[1][0].boot_wrench, abs=0.5)
-    assert runs[1][0].work_given == (0.0, 0.0)
+    assert runs[1][0].part("work_given").tolist() == [0.0, 0.0]
 
 
 def test_boots_bear_the_weight_of_what_stands_on_them() -> None:
@@ -107,9 +107,9 @@ def test_in_the_air_the_centre_of_mass_stays_and_the_work_of_the_boots_is_there(
     dynamics.move_boots([BootMotion(0.0, 0.1, *pair) for pair in zip(first, last, strict=True)])
     dynamics.begin(np.zeros(6))
     assert dynamics.advance(0.05) is Ended.REACHED
-    kinetic, _, elastic = dynamics.energies
+    kinetic, _, elastic = dynamics.part("energies")
     assert kinetic > 1.0
-    assert dynamics.work_given[0] == pytest.approx(kinetic + elastic + dynamics.work[4], rel=2e-3)
+    assert dynamics.part("work_given")[0] == pytest.approx(kinetic + elastic + dynamics.part("work")[4], rel=2e-3)
     assert dynamics.advance(0.1) is Ended.REACHED
     assert centre_of_mass(dynamics) == pytest.approx(before, abs=2e-4)  # a bent ski's own is not counted
     assert dynamics.position[2] - start[2] < -0.004
@@ -176,7 +176,7 @@ def test_a_push_gives_momentum() -> None:
     dynamics.advance(0.2)
     velocity = dynamics.rotation @ dynamics.velocity[:3]
     assert velocity[0] == pytest.approx(50.0 * 0.2 / body.mass, rel=3e-3)
-    assert dynamics.work_given[1] == pytest.approx(dynamics.energies[0], rel=5e-3)
+    assert dynamics.part("work_given")[1] == pytest.approx(dynamics.part("energies")[0], rel=5e-3)
 
 
 def test_what_cannot_move_is_refused() -> None:

@@ -41,10 +41,10 @@ def test_the_start_is_that_of_the_former_solver(former: dict[str, Any]) -> None:
     within = 1e-6 if former["changes"] else 1e-7
     assert dynamics.position[2] == pytest.approx(former["height"], abs=0.2 * within)
     assert dynamics.rotation[2] == pytest.approx(former["normal"], abs=0.6 * within)
-    off_lines = abs(dynamics.rotation[2, 0]) * np.abs(dynamics.beam_dofs[:, 1::3]).max()
+    off_lines = abs(dynamics.rotation[2, 0]) * np.abs(dynamics.part("beam_dofs")[:, 1::3]).max()
     for unknown, both in former["bend"].items():
         limit = within + off_lines * np.abs(both).max()
-        assert dynamics.beam_dofs[:, int(unknown)] == pytest.approx(both, abs=limit), unknown
+        assert dynamics.part("beam_dofs")[:, int(unknown)] == pytest.approx(both, abs=limit), unknown
 
 
 def test_place_and_heading_are_held() -> None:
@@ -64,13 +64,13 @@ def test_it_begins_where_it_was_moved_to_with_its_skis_as_bent() -> None:
     """Two metres above the snow, turned by a quarter: 1 ms later it is 2 mm on, to its own front, and falls."""
     dynamics = sledge(given())
     assert dynamics.find_equilibrium() < 1e-9
-    bent = dynamics.beam_dofs.copy()
+    bent = dynamics.part("beam_dofs").copy()
     assert np.abs(bent).max() > 1e-3
     turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     dynamics.move_to(np.array([7.0, -3.0, 2.0]), turned)
     assert dynamics.position.tolist() == [7.0, -3.0, 2.0]
     assert dynamics.rotation.tolist() == turned.tolist()
-    assert dynamics.beam_dofs.tolist() == bent.tolist()
+    assert dynamics.part("beam_dofs").tolist() == bent.tolist()
     dynamics.begin(np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
     dynamics.advance(1e-3)
     assert dynamics.position[:2] == pytest.approx([7.0, -2.998], abs=5e-5)

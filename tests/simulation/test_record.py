@@ -73,7 +73,7 @@ def test_forces_of_friction_are_sums_over_the_sections() -> None:
     record = Record(set_up(load_scenario("carved-46m", changes={"friction.mu_0": 0.1})))
     record.advance(0.03)
     dynamics = record.setup.dynamics
-    for ski, pushes in enumerate(dynamics.pushes):
+    for ski, pushes in enumerate(dynamics.part("pushes")):
         sections = dynamics.contact.sections(ski)
         sums = [float(force.sum()) for force in (sections.push, sections.push_across, sections.push_off)]
         assert sums[0] < -10.0
@@ -86,7 +86,7 @@ def test_what_is_reported_of_the_skis_is_what_the_beams_and_boots_have() -> None
     setup = set_up(scenario)
     skis = Record(setup).histories()["skis"]
     free = setup.dynamics.body.skis[0].unknown >= 0
-    dofs = setup.dynamics.beam_dofs.reshape(2, -1, 3)
+    dofs = setup.dynamics.part("beam_dofs").reshape(2, -1, 3)
     assert skis.bending[0][:, free].tolist() == dofs[:, :, 0].tolist()
     assert skis.twist[0][:, free].tolist() == dofs[:, :, 2].tolist()
     assert np.abs(dofs[:, :, 0]).max() > 1e-3

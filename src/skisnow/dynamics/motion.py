@@ -105,12 +105,28 @@ MOMENT: Final[Mapping[str, slice]] = {
     "work": slice(31, 37),
     "work_given": slice(37, 39),
 }
-"""Places in a row of `Dynamics.moment` after the time and before its skis."""
+"""Places in a row of `Dynamics.moment` after the time and before its skis; energies, losses and work in J.
+
+energies: kinetic, potential, elastic in the skis.
+snow_energies: recoverable ones of the snow: pressure, shear at edges, sticking friction, delayed penetration.
+snow_losses: since `begin`, each never falls: penetration, shear, friction, damping with delayed depth; then the energy
+    that the snow gave beyond the energy that it had stored.
+work: since `begin`: taken by shear and friction, given by the normal force, taken by air and skis; the part of the
+    normal force's work that the snow's dashpot absorbed.
+work_given: since `begin`, by the motion of the boots, and by the push.
+"""
 _OF_SKIS: Final[int] = MOMENT["work_given"].stop
 
 
 def moment_parts(rows: FloatArray, skis: Sequence[FlexibleSki]) -> dict[str, FloatArray]:
-    """Parts of rows (..., width) of `Dynamics.moment`, each named and shaped as the property of `Dynamics`."""
+    """Parts of rows (..., width) of `Dynamics.moment`: the time (s), those of `MOMENT`, and of each ski (..., skis, …).
+
+    pushes: force along the edge, forward positive; of friction across it, and off the surface (N), (3,).
+    along: depth of the edge (m), force and shear per length (N/m) at the m nodes, (3, m).
+    beam_dofs: deflection (m), its slope and twist (rad) at each free node, (n,).
+    boots: as `Dynamics.boots`, (6, 3).
+    boot_wrench: as `Dynamics.boot_wrench`, (6,).
+    """
     shape = rows.shape[:-1]
     parts: dict[str, FloatArray] = {"time": rows[..., 0]} | {name: rows[..., at] for name, at in MOMENT.items()}
     parts["rotation"] = parts["rotation"].reshape(*shape, 3, 3)
@@ -278,61 +294,14 @@ class Dynamics:
         """All of the present moment as one row of numbers; `moment_parts` names them."""
         return self._core.moment
 
-    def _part_of_moment(self, name: str) -> FloatArray:
+    def part(self, name: str) -> FloatArray:
+        """Part of the present moment, such as "energies" (J), at the last time reached; `moment_parts` lists them."""
         return moment_parts(self.moment, self.body.skis)[name]
-
-    @property
-    def beam_dofs(self) -> FloatArray:
-        """Degrees of freedom of the beams, (skis, n): deflection (m), its slope and twist (rad) at each free node."""
-        return self._part_of_moment("beam_dofs")
-
-    def along(self, ski: int) -> FloatArray:
-        """At the last time reached: depth of the edge (m), force and shear per length (N/m) at the nodes, (3, m)."""
-        return self._part_of_moment("along")[ski]
-
-    @property
-    def pushes(self) -> FloatArray:
-        """Forces on each ski at the last time reached (N), (skis, 3).
-
-        Along the edge, forward positive; of friction across it, and off the surface.
-        """
-        return self._part_of_moment("pushes")
 
     @property
     def touches(self) -> bool:
         """True if a ski was in the snow at the end of the last step."""
         return bool(self._core.touches)
-
-    @property
-    def energies(self) -> tuple[float, ...]:
-        """Kinetic, potential, elastic in the skis (J)."""
-        return tuple(self._part_of_moment("energies").tolist())
-
-    @property
-    def snow_energies(self) -> tuple[float, ...]:
-        """Recoverable energies of the snow (J): pressure, shear at edges, sticking friction, delayed penetration."""
-        return tuple(self._part_of_moment("snow_energies").tolist())
-
-    @property
-    def snow_losses(self) -> tuple[float, ...]:
-        """Losses since `begin` (J): penetration, shear, friction, damping with delayed depth; then the energy owed.
-
-        A loss never falls. Owed is the energy that the snow gave beyond the energy that it had stored.
-        """
-        return tuple(self._part_of_moment("snow_losses").tolist())
-
-    @property
-    def work(self) -> tuple[float, ...]:
-        """Work since `begin` (J): taken by shear and friction, given by the normal force, taken by air and skis.
-
-        The last: the part of the normal force's work that the snow's dashpot absorbed.
-        """
-        return tuple(self._part_of_moment("work").tolist())
-
-    @property
-    def work_given(self) -> tuple[float, ...]:
-        """Work since `begin` (J) of the motion of the boots, and of the push."""
-        return tuple(self._part_of_moment("work_given").tolist())
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:

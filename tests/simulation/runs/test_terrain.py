@@ -238,7 +238,7 @@ def glided(**changes: float) -> Setup:
 
 
 def in_snow(setup: Setup) -> float:
-    return setup.dynamics.snow_energies[0] + setup.dynamics.contact.groove_energy
+    return setup.dynamics.part("snow_energies")[0] + setup.dynamics.contact.groove_energy
 
 
 @pytest.mark.parametrize("changes", [DAMPED, pytest.param(DELAYED, marks=pytest.mark.slow)], ids=["damped", "delayed"])
@@ -246,8 +246,8 @@ def test_what_the_normal_force_gives_is_in_the_snow_or_taken_by_its_rate(changes
     setup = glided(**changes)
     before = in_snow(setup)
     setup.dynamics.advance(0.3)
-    kept, given = in_snow(setup) - before, -setup.dynamics.work[2]
-    taken = setup.dynamics.work[5] + setup.dynamics.contact.delayed_energy
+    kept, given = in_snow(setup) - before, -setup.dynamics.part("work")[2]
+    taken = setup.dynamics.part("work")[5] + setup.dynamics.contact.delayed_energy
     assert taken > 0.15 * given
     assert kept + taken == pytest.approx(given, rel=0.03)
 
