@@ -196,25 +196,30 @@ def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
 
 
 _WIDEST: Final = 160
-"""Characters of a line of `declared_text`."""
+"""Characters of a line of a text of `Declared`."""
 
 
-def declared_text(thing: Any) -> str:
-    """Text of a dataclass by the names of its quantities, with units, for its ``__repr__``.
+class Declared:
+    """Base of a dataclass of quantities, which its constructor checks and its text names with their units.
 
     >>> @dataclass(frozen=True, repr=False)
-    ... class Step:
+    ... class Step(Declared):
     ...     length: Annotated[float, Quantity("solver.step_ms", "time step")] = 0.5e-3
-    ...
-    ...     __repr__ = declared_text
     >>> Step()
     <Step: step_ms = 0.5>
     """
-    pairs = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
-    glue = "\xa0"  # a name stays beside its value
-    values = ", ".join(f"{name} = {_short_text(value)}".replace(" ", glue) for name, value in pairs)
-    lines = textwrap.wrap(f"<{type(thing).__name__}: {values}>", _WIDEST, subsequent_indent="    ")
-    return "\n".join(lines).replace(glue, " ")
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+    def __repr__(self) -> str:
+        pairs = ((name.rpartition(".")[2], value) for name, value in values_of(self).items() if value is not None)
+        glue = "\xa0"  # a name stays beside its value
+        values = ", ".join(f"{name} = {_short_text(value)}".replace(" ", glue) for name, value in pairs)
+        lines = textwrap.wrap(f"<{type(self).__name__}: {values}>", _WIDEST, subsequent_indent="    ")
+        return "\n".join(lines).replace(glue, " ")
 
 
 def _short_text(value: Any) -> str:

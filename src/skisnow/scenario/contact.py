@@ -16,12 +16,12 @@ from ..parameters import (
     APART,
     Allowed,
     Condition,
+    Declared,
     Label,
     Quantity,
     Search,
     Section,
     Word,
-    declared_text,
     require_declared,
 )
 from ..snow import SnowProperties
@@ -35,7 +35,7 @@ ELASTIC: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Contact:
+class Contact(Declared):
     """Contact of skis and snow.
 
     snow: With H_V and S_f; where these vary over the place, with their means.
@@ -223,8 +223,6 @@ class Contact:
             label=Message("file of the snow over the place"),
         ),
     ] = None
-
-    __repr__ = declared_text
 
     @property
     def greatest_hardness(self) -> float:

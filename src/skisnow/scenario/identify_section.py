@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
@@ -182,16 +182,14 @@ def measured_of(snow: SnowProperties) -> tuple[Measured, ...]:
     >>> measured_of(snow)
     (Measured(key='snow.unloading_ratio', value=9.0, low=6.0, high=16.0),)
     """
-    return tuple(_measured_values(snow))
-
-
-def _measured_values(snow: SnowProperties) -> Iterator[Measured]:
     measured = (
         ("snow.H_V_N_per_mm3", snow.snow_hardness, snow.snow_hardness_interval, N_PER_MM3),
         ("snow.S_f_N_per_mm2", snow.failure_shear_stress, snow.failure_shear_stress_interval, N_PER_MM2),
         ("snow.unloading_ratio", snow.unloading_ratio, snow.unloading_ratio_interval, 1.0),
         ("snow.shear_displacement_mm", snow.shear_displacement, snow.shear_displacement_interval, MM),
     )
-    for key, value, interval, unit in measured:
-        if value is not None and interval is not None and interval[0] > 0.0:
-            yield Measured(key=key, value=value / unit, low=interval[0] / unit, high=interval[1] / unit)
+    return tuple(
+        Measured(key=key, value=value / unit, low=interval[0] / unit, high=interval[1] / unit)
+        for key, value, interval, unit in measured
+        if value is not None and interval is not None and interval[0] > 0.0
+    )

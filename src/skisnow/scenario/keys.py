@@ -150,15 +150,10 @@ def _spellings(key: str) -> tuple[str, str, str, str]:
     return key, bare, without_unit(key), without_unit(bare)
 
 
-def _by_word() -> Mapping[str, tuple[str, ...]]:
-    keys_by_word: dict[str, tuple[str, ...]] = {}
-    for key in SCENARIO_KEYS:
-        for word in dict.fromkeys(_spellings(key)):
-            keys_by_word[word] = (*keys_by_word.get(word, ()), key)
-    return keys_by_word
-
-
-_KEYS_BY_WORD: Final = _by_word()
+_KEYS_BY_WORD: Final[dict[str, list[str]]] = {}
+for _key in SCENARIO_KEYS:
+    for _word in dict.fromkeys(_spellings(_key)):
+        _KEYS_BY_WORD.setdefault(_word, []).append(_key)
 
 
 def free_key(word: str) -> str:

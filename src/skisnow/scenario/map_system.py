@@ -13,7 +13,6 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message, template
 from ..track.projection import earth_centred
 
 TRUE_LENGTHS: Final = 0.005
@@ -119,31 +118,23 @@ def require_true_lengths(path: object, system: MapSystem, x: float, y: float) ->
 
     x, y: middle of the grid, in the system's units.
     """
-    true_scale = _scale(system, x, y)
+    true_scale, limit = _scale(system, x, y), 100 * TRUE_LENGTHS
     if true_scale is None:
         if _MERCATOR.search(system.text):
-            raise ParameterError(_stretched_problem(_BY_LATITUDE, path, system)).tag("stretched")
+            raise ParameterError(
+                "{path}: The map system {system} stretches lengths by 1/cos of the latitude at the grid. Allowed: at "
+                "most {limit:g} %. Fix: warp the grid to a system with true lengths, such as gdalwarp -t_srs the UTM "
+                "zone of the place -r cubic."
+            ).tag("stretched", path=path, system=system.name, limit=limit)
         return
     scales, target = true_scale
     worst = max(scales, key=lambda scale: abs(scale - 1.0))
     if not abs(worst - 1.0) <= TRUE_LENGTHS:
-        raise ParameterError(_stretched_problem(_BY_FACTOR, path, system, factor=worst, target=target)).tag("stretched")
-
-
-_BY_LATITUDE: Final = template(
-    "{path}: The map system {system} stretches lengths by 1/cos of the latitude at the grid. Allowed: at most "
-    "{limit:g} %. "
-    "Fix: warp the grid to a system with true lengths, such as gdalwarp -t_srs the UTM zone of the place -r cubic."
-)
-_BY_FACTOR: Final = template(
-    "{path}: The map system {system} stretches lengths by a factor of {factor:.4g} at the grid. Allowed: at most "
-    "{limit:g} "
-    "%. Fix: warp the grid to a system with true lengths, such as gdalwarp -t_srs {target} -r cubic."
-)
-
-
-def _stretched_problem(text: str, path: object, system: MapSystem, **fields: object) -> Message:
-    return Message(text, path=path, system=system.name, limit=100 * TRUE_LENGTHS, **fields)
+        raise ParameterError(
+            "{path}: The map system {system} stretches lengths by a factor of {factor:.4g} at the grid. Allowed: at "
+            "most {limit:g} %. Fix: warp the grid to a system with true lengths, such as gdalwarp -t_srs {target} -r "
+            "cubic."
+        ).tag("stretched", path=path, system=system.name, factor=worst, limit=limit, target=target)
 
 
 def utm_zone(longitude_deg: float, latitude_deg: float) -> str:

@@ -37,6 +37,8 @@ _HEIGHT: Final = Limits(
 )
 _SNOW: Final = Limits(0.0, 1e6, "Check the unit.")
 LIMITS: Final[Mapping[str, Limits]] = {
+    "x": _PLACE,
+    "y": _HEIGHT,
     "x_m": _PLACE,
     "y_m": _PLACE,
     "z_m": _HEIGHT,
@@ -44,7 +46,8 @@ LIMITS: Final[Mapping[str, Limits]] = {
     "S_f_N_per_mm2": _SNOW,
     "mu_share": _SNOW,
 }
-"""By column; 9000 m is above the highest mountain, and heights may count from a place of the slope."""
+"""By column, x and y being those of a profile. 9000 m is above the highest mountain, and heights may count from a place
+of the slope."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +83,10 @@ class Raster:
     where: Callable[[int, int], str]
 
 
-def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> float:
+def number_within(row: CsvRow, column: str) -> float:
     """Number in a cell of a table."""
     value = row.number(column)
-    allowed = limits or LIMITS[column]
+    allowed = LIMITS[column]
     if not allowed.lowest <= value <= allowed.highest:
         raise ParameterError(
             "{path}, row {row}, column {column}: {cell!r} is out of range. Allowed: from {lowest:g} to {highest:g}. "
@@ -99,11 +102,6 @@ def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> flo
             note=allowed.note,
         )
     return value
-
-
-def profile_limits(columns: tuple[str, str]) -> dict[str, Limits]:
-    """Limits of a profile's columns: horizontal distance, height."""
-    return dict(zip(columns, (_PLACE, _HEIGHT), strict=True))
 
 
 def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:

@@ -7,12 +7,12 @@ from typing import Annotated, Literal, TypeAlias
 
 from .._support.messages import Message
 from ..forces.penetration.law import DELAYED_SPACING
-from ..parameters import Allowed, Condition, Label, Quantity, Search, declared_text, require_declared
+from ..parameters import Allowed, Condition, Declared, Label, Quantity, Search
 from ..ski.beam import MOST_ELEMENTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Start:
+class Start(Declared):
     """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
 
     x: Annotated[
@@ -46,14 +46,9 @@ class Start:
         Search(30.0, -45.0, 45.0, about=True),
     ] = 0.0
 
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Stop:
+class Stop(Declared):
     """End of a run: after a time (s), a run length (m), or the first of both."""
 
     duration: Annotated[
@@ -69,17 +64,12 @@ class Stop:
         Allowed(0.0, 100_000.0, above=True),
     ] = None
 
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
-
 
 Method: TypeAlias = Literal["default", "fast"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Solver:
+class Solver(Declared):
     """Settings of the computation; lengths in m, times in s. None: derived from ski and snow.
 
     See Also
@@ -165,8 +155,3 @@ class Solver:
         Label(Message("time between outputs")),
         Allowed(0.1, 1000.0, origin="choice: a tenth of a metre at 10 m/s"),
     ] = 0.01
-
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)

@@ -6,7 +6,6 @@ Each field declares its key in a file with unit, range, origin of the default, a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
@@ -219,8 +218,7 @@ class Scenario(Shown):
 
 def _require_sound(scenario: Scenario) -> None:
     """Reject parts of a scenario that contradict each other."""
-    for complaint in _contradictions(scenario):
-        raise ParameterError(complaint).tag("contradiction")
+    _require_room(scenario)
     skier, sledge = scenario.skier, scenario.sledge
     if skier is None:
         return
@@ -241,48 +239,34 @@ def _require_sound(scenario: Scenario) -> None:
         ).tag("out_of_range", longest_leg=skier.longest_leg, centre_of_mass=sledge.centre_of_mass[1])
 
 
-def _contradictions(scenario: Scenario) -> Iterator[Message]:
+def _require_room(scenario: Scenario) -> None:
+    """Reject skis without room side by side, and an edge angle, friction or place with which no run begins."""
     sledge, ski, shear, start = scenario.sledge, scenario.ski, scenario.shear, scenario.start
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
-        yield Message(
+        raise ParameterError(
             "the stance width is {stance:g} m; the ski {name} is {width:.3g} m wide, and two must have room side "
-            "by side: "
-            "{width:.3g} m or more",
-            stance=sledge.stance_width,
-            name=ski.name,
-            width=width,
-        )
+            "by side: {width:.3g} m or more"
+        ).tag("contradiction", stance=sledge.stance_width, name=ski.name, width=width)
     most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
     if scenario.clamp_length >= most:
-        yield Message(
+        raise ParameterError(
             "the clamp length is {clamp_length:g} m; the ski {name} allows less than {most:.3g} m. Write 0 for a "
-            "binding "
-            "that bends with the ski",
-            clamp_length=scenario.clamp_length,
-            name=ski.name,
-            most=most,
-        )
+            "binding that bends with the ski"
+        ).tag("contradiction", clamp_length=scenario.clamp_length, name=ski.name, most=most)
     friction = scenario.contact.friction_at(start.speed)
     if friction < 0.0:
-        yield Message(
-            "the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski",
-            friction=friction,
-        )
+        raise ParameterError(
+            "the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski"
+        ).tag("contradiction", friction=friction)
     if abs(sledge.edge_angle) < shear.smallest_cutting_angle:
-        least = math.degrees(shear.smallest_cutting_angle)
-        yield Message(
+        edge_angle, least = math.degrees(abs(sledge.edge_angle)), math.degrees(shear.smallest_cutting_angle)
+        raise ParameterError(
             "the edge angle is {edge_angle:.3g}°; machining needs {least:.3g}° or more, β + 2 "
-            "shear.least_shear_plane_deg: use a larger edge angle or another shear.law",
-            edge_angle=math.degrees(abs(sledge.edge_angle)),
-            least=least,
-        )
+            "shear.least_shear_plane_deg: use a larger edge angle or another shear.law"
+        ).tag("contradiction", edge_angle=edge_angle, least=least)
     for name, place, (first, last) in zip("xy", (start.x, start.y), extent_of(scenario.slope), strict=True):
         if not first <= place <= last:
-            yield Message(
-                "the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there",
-                name=name,
-                place=place,
-                first=first,
-                last=last,
-            )
+            raise ParameterError(
+                "the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there"
+            ).tag("contradiction", name=name, place=place, first=first, last=last)

@@ -7,13 +7,13 @@ from typing import Annotated, Literal, TypeAlias
 
 from .._support.messages import Message
 from .._support.units import DEGREE
-from ..parameters import Allowed, Condition, Label, Quantity, declared_text, require_declared
+from ..parameters import Allowed, Condition, Declared, Label, Quantity
 
 Steers: TypeAlias = Literal["turns", "gates", "side-slip", "wedge"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Skier:
+class Skier(Declared):
     """Steering, body and control of a balanced skier, SI and rad.
 
     steers, stops_after: By a plan of turns over time, through the gates of the scenario's course, or straight: a
@@ -252,8 +252,3 @@ class Skier:
         Label(Message("period of the control")),
         Allowed(1.0, 50.0, origin="choice: with 10 legs that give way make the loads swing"),
     ] = 5e-3
-
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)

@@ -12,12 +12,12 @@ from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.law import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
-from ..parameters import Allowed, Condition, Label, Quantity, Search, declared_text, require_declared
+from ..parameters import Allowed, Condition, Declared, Label, Quantity, Search, require_declared
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class RigidSledge:
+class RigidSledge(Declared):
     """The sledge without its skis, SI.
 
     Attributes
@@ -94,8 +94,6 @@ class RigidSledge:
         Search(30.0, -30.0, 30.0, about=True),
     ]
 
-    __repr__ = declared_text
-
     def __post_init__(self) -> None:
         require_declared(self)
         roll, pitch, yaw = self.inertia
@@ -106,7 +104,7 @@ class RigidSledge:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Air:
+class Air(Declared):
     """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
 
     drag_area: Annotated[
@@ -135,11 +133,6 @@ class Air:
         Search(0.5, 0.0, 3.0),
     ]
 
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
-
 
 Law: TypeAlias = Literal["constant", "by-angle", "by-density", "machining"]
 UPRIGHT: Final = 2.0
@@ -147,7 +140,7 @@ UPRIGHT: Final = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Shear:
+class Shear(Declared):
     """The law of the shear strength, in SI; a value of None is derived from the snow.
 
     law: S_f as it is; S_f (1 - k ϑ); S_f of a density; or cutting with its thrust.
@@ -236,8 +229,6 @@ class Shear:
         ),
         Label(Message("height that resists")),
     ] = "whole-edge"
-
-    __repr__ = declared_text
 
     def __post_init__(self) -> None:
         require_declared(self)

@@ -18,8 +18,8 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
 from .._support.units import Facts, Shown, ends
-from ..parameters import Allowed, Condition, Label, Quantity, Search, Word, declared_text, require_declared
-from .raster import number_within, profile_limits
+from ..parameters import Allowed, Condition, Declared, Label, Quantity, Search, Word, require_declared
+from .raster import number_within
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -36,7 +36,7 @@ STEEPEST_DEG: Final = 75.0
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Plane:
+class Plane(Declared):
     """A plane with its inclination (rad)."""
 
     angle: Annotated[
@@ -47,11 +47,6 @@ class Plane:
         Condition("slope.kind", "plane"),
         Search(10.0, -15.0, 15.0, about=True),
     ]
-
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -213,9 +208,8 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
         one (the message names file, row, column and value), or the points do not form a profile: too few, x that does
         not rise, a gap, a cliff.
     """
-    limits = profile_limits(COLUMNS)
     rows = csv_rows(path, COLUMNS, action=_ACTION)
-    numbers = [[number_within(row, name, limits[name]) for name in COLUMNS] for row in rows]
+    numbers = [[number_within(row, name) for name in COLUMNS] for row in rows]
     table = np.array(numbers, dtype=float).reshape(-1, 2)
     try:
         return Profile(table[:, 0], table[:, 1], gap=gap, source=str(path))

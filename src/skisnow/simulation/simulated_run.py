@@ -192,28 +192,24 @@ def _run_once(
 
 def _warn_of_closer_lines(spacing: float, closer: float) -> None:
     """Warn that the run was repeated because its lines of snow were too far apart."""
-    text = Message(
+    warning = ModelLimitWarning(
         "with lines of snow {spacing:.3g} mm apart the energy balance stayed open. The run was repeated with lines "
-        "{closer:.3g} mm apart. Set solver.line_spacing_mm to {closer:.3g} or less",
-        spacing=spacing / MM,
-        closer=closer / MM,
-    )
-    warnings.warn(ModelLimitWarning(text).tag("repeated_with_closer_lines"), stacklevel=3)
+        "{closer:.3g} mm apart. Set solver.line_spacing_mm to {closer:.3g} or less"
+    ).tag("repeated_with_closer_lines", spacing=spacing / MM, closer=closer / MM)
+    warnings.warn(warning, stacklevel=3)
 
 
 def _warn_of_unseen_tracks(setup: Setup) -> None:
     """Warn of older tracks between the lines of snow, with the largest force that is missing."""
     width, force = setup.dynamics.contact.compiled.unseen_track()
     if width > 0.0:
-        text = Message(
+        spacing = setup.numbers["line_spacing_m"]
+        warning = ModelLimitWarning(
             "older tracks of up to {width:.2g} mm crossed between two lines of snow, {spacing:.3g} mm apart, and were "
             "not seen: up to {force:.2g} N of the force on a ski may be wrong there. Use a solver.line_spacing_mm "
-            "below {width:.2g}",
-            width=width / MM,
-            spacing=setup.numbers["line_spacing_m"] / MM,
-            force=force,
-        )
-        warnings.warn(ModelLimitWarning(text).tag("tracks_between_lines"), stacklevel=3)
+            "below {width:.2g}"
+        ).tag("tracks_between_lines", width=width / MM, spacing=spacing / MM, force=force)
+        warnings.warn(warning, stacklevel=3)
 
 
 def _warn_of_friction(run: Run) -> None:
@@ -225,13 +221,11 @@ def _warn_of_friction(run: Run) -> None:
         contact.friction_law.warn_outside(contact.temperature, contact.liquid_water or 0.0, speeds)
     elif contact.friction_at(fastest) < 0.0:
         zero_at = -contact.friction / contact.friction_by_speed
-        text = Message(
+        warning = ModelLimitWarning(
             "mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction counts "
-            "as 0 there. Use a friction.mu_1_s_per_m nearer to 0",
-            zero_at=zero_at,
-            fastest=fastest,
-        )
-        warnings.warn(ModelLimitWarning(text).tag("friction_below_zero"), stacklevel=3)
+            "as 0 there. Use a friction.mu_1_s_per_m nearer to 0"
+        ).tag("friction_below_zero", zero_at=zero_at, fastest=fastest)
+        warnings.warn(warning, stacklevel=3)
 
 
 @dataclass(slots=True)
