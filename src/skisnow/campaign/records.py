@@ -16,8 +16,8 @@ import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import DEGREE, MM, Facts, Shown, amount, ends
-from ..geometry import Tool
 from .problems import AppliedCorrection, Problem
+from .reading.campaign_file import Description
 from .smet import CampaignWeather
 from .snow_micro_pen import SnowMicroPenRecordings
 
@@ -270,24 +270,16 @@ def _means_by_key(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[s
     return {key: math.fsum(items) / len(items) for key, items in collected.items()}
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class Campaign(Shown):
-    """A valid campaign with its corrections applied.
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Campaign(Shown, Description):
+    """A valid campaign with its corrections applied; fields from campaign.toml as in its base `Description`.
 
-    name, place, observers: from campaign.toml; the default name is that of the folder.
     folder: folder from which it was read.
-    gauge_resolution: step of the depth gauge (m), or None if not stated.
-    load_uncertainty, moment_uncertainty, lever_arm_uncertainty: standard uncertainties (N, N m, m); None counts as 0.
-    seating: standard deviation of the depth zero from series to series (m); None where not stated.
-    load_steps: loads of the campaign's discs (N), for entry; can be empty.
-    tools, plates: tools by name; plate lengths L (m) by name.
-    excluding: codes of the quality flags that keep an experiment out of the estimates.
     penetration, shear, density, drop_cone, snow_micro_pen: the tables; None without such a file.
     problems: warnings from reading the files.
     file_hashes: SHA-256 of each file that was read, by name.
     corrections: applied corrections, in the order of corrections.csv.
     unread_files: names of files in the folder that are not part of a campaign.
-    pole_stiffness: moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
     weather: readings of a weather station (optional).
     places: workbook and sheet of tables that are sheets of a workbook, by the name of the file.
 
@@ -297,17 +289,7 @@ class Campaign(Shown):
     """
 
     name: str
-    place: str
-    observers: tuple[str, ...]
     folder: Path
-    gauge_resolution: float | None
-    load_uncertainty: float | None
-    moment_uncertainty: float | None
-    lever_arm_uncertainty: float | None
-    load_steps: tuple[float, ...]
-    tools: Mapping[str, Tool]
-    plates: Mapping[str, float]
-    excluding: frozenset[str]
     penetration: PenetrationTests | None
     shear: ShearTests | None
     density: DensitySamples | None
@@ -316,8 +298,6 @@ class Campaign(Shown):
     file_hashes: Mapping[str, str]
     corrections: tuple[AppliedCorrection, ...] = ()
     unread_files: tuple[str, ...] = ()
-    pole_stiffness: float | None = None
-    seating: float | None = None
     places: Mapping[str, str] = field(default_factory=dict)
     snow_micro_pen: SnowMicroPenRecordings | None = None
     weather: CampaignWeather | None = None

@@ -101,9 +101,15 @@ def _measurements_xml(pit: SnowPit) -> Iterator[str]:
         yield _nested("tempProfile", "<caaml:tempMetaData/>" + "".join(map(_temperature_xml, pit.temperatures)))
     if pit.densities:
         method = _nested("densityMetaData", _element_xml("methodOfMeas", "other"))
-        yield _nested("densityProfile", method + "".join(map(_density_xml, pit.densities)))
+        samples = (
+            _nested("Layer", _extent(sample) + _element_xml("density", _number(sample.snow_density), uom="kgm-3"))
+            for sample in pit.densities
+        )
+        yield _nested("densityProfile", method + "".join(samples))
     yield from map(_forces_xml, pit.forces)
-    yield from _custom_data_xml(pit)
+    values = (("snowHardness", "N mm-3", pit.snow_hardness), ("failureShearStress", "N mm-2", pit.failure_shear_stress))
+    if elements := "".join(_plate_value(name, unit, value) for name, unit, value in values if value is not None):
+        yield _nested("customData", elements)
 
 
 def _layer_xml(layer: SnowLayer) -> str:
@@ -121,10 +127,6 @@ def _layer_xml(layer: SnowLayer) -> str:
             _require_choice("hand hardness", hardness, HAND_HARDNESSES)
             parts.append(_element_xml(name, hardness, uom=""))
     return _nested("Layer", "".join(parts))
-
-
-def _density_xml(sample: LayerDensity) -> str:
-    return _nested("Layer", _extent(sample) + _element_xml("density", _number(sample.snow_density), uom="kgm-3"))
 
 
 def _temperature_xml(observed: DepthTemperature) -> str:
@@ -152,13 +154,6 @@ def _forces_xml(profile: ForceProfile) -> str:
         + _nested("MeasurementComponents", components, uomDepth="cm", uomHardness="N")
         + _nested("Measurements", _element_xml("tupleList", rows)),
     )
-
-
-def _custom_data_xml(pit: SnowPit) -> Iterator[str]:
-    values = (("snowHardness", "N mm-3", pit.snow_hardness), ("failureShearStress", "N mm-2", pit.failure_shear_stress))
-    elements = "".join(_plate_value(name, unit, value) for name, unit, value in values if value is not None)
-    if elements:
-        yield _nested("customData", elements)
 
 
 def _plate_value(name: str, unit: str, value: PlateValue) -> str:

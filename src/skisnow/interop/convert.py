@@ -29,7 +29,7 @@ from ..estimation.weather import QUANTITIES
 from ..parameters import suggest_and_list
 from .caaml import write_caaml
 from .campaign_netcdf import write_campaign_netcdf
-from .opensim import Markers, read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
+from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
 from .snowex import site_pit, sites_of, write_snowex_force, write_snowex_pit
 
 NO_DATA: Final = -999.0
@@ -169,7 +169,7 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
         raise ParameterError(
             "layers of a run come from a .pnt file and go into a .csv file. Remove --layers-to-mm"
         ).tag("wrong_ending")
-    return made(source, target, options)
+    return made(source, target, options) or (target,)
 
 
 def _kind_of_file(path: Path) -> str:
@@ -209,10 +209,11 @@ def _pit_of_recording(source: Path) -> SnowPit:
     )
 
 
-def _recording_as_csv(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+def _recording_as_csv(source: Path, target: Path, options: ConvertOptions) -> None:
     profile = read_snow_micro_pen(source)
     if options.layers_to is None:
-        return (write_snowex_force(profile, target),)
+        write_snowex_force(profile, target)
+        return
     default = SnowMicroPenSettings()
     surface = snow_surface(profile.force, profile.sample_distance, rise=default.surface_rise, hold=default.surface_hold)
     tops = MM * np.arange(round(options.layers_to / MM) + 2)
@@ -226,7 +227,6 @@ def _recording_as_csv(source: Path, target: Path, options: ConvertOptions) -> tu
         (f"{top / MM:g}", f"{max(float(layer.mean()), 1e-6):.6g}") for top, layer in zip(tops, layers, strict=False)
     )
     write_file(target, csv_text((("depth_mm", "force_N"), *rows)))
-    return (target,)
 
 
 def _completed(pit: SnowPit, options: ConvertOptions) -> SnowPit:
@@ -243,57 +243,42 @@ def _to_snowex(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
     return lambda source, target, options: write_snowex_pit(_completed(read(source, options), options), target)
 
 
-def _to_netcdf(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
-    write_campaign_netcdf(read_campaign(source), target)
-    return (target,)
-
-
-def _weather_as_csv(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+def _weather_as_csv(source: Path, target: Path, options: ConvertOptions) -> None:
     series = read_smet(source)
-    written = write_weather_csv(series, target)
+    write_weather_csv(series, target)
     omitted = [name for name in series.fields if name not in {field for field, *_ in QUANTITIES.values()}]
     if omitted and options.report is not None:
         options.report(f"{source}: {', '.join(omitted)} are not columns of a campaign and are omitted")
-    return (written,)
 
 
-def _to_opensim_table(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
-    write_motion(read_motion(source), target)
-    return (target,)
+def _c3d_as_trc(source: Path, target: Path, options: ConvertOptions) -> None:
+    markers = read_c3d(source)
+    if markers.omitted and options.report is not None:
+        names = ", ".join(markers.omitted)
+        options.report(f"{source}: {len(markers.omitted)} points without a name or a place are omitted: {names}")
+    write_trc(markers, target)
 
 
-def _to_trc(read: Callable[[Path], Markers]) -> Conversion:
-    def convert_markers(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
-        markers = read(source)
-        if markers.omitted and options.report is not None:
-            names = ", ".join(markers.omitted)
-            options.report(f"{source}: {len(markers.omitted)} points without a name or a place are omitted: {names}")
-        write_trc(markers, target)
-        return (target,)
-
-    return convert_markers
-
-
-def _to_c3d(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+def _trc_as_c3d(source: Path, target: Path, options: ConvertOptions) -> None:
     write_c3d(read_trc(source), target, forces=None if options.forces is None else read_motion(options.forces))
-    return (target,)
 
 
-Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...]]
+Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...] | None]
+"""Reads the source and writes the target, or returns several files that it wrote instead."""
 
 CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),
     (CAMPAIGN, CSV): _to_snowex(_pit_of_campaign),
-    (CAMPAIGN, NETCDF): _to_netcdf,
+    (CAMPAIGN, NETCDF): lambda source, target, _: write_campaign_netcdf(read_campaign(source), target),
     ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
     ("CAAML", CSV): _to_snowex(lambda source, _: read_caaml(source)),
     ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
     ("SnowMicroPen", CSV): _recording_as_csv,
     ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
     ("SMET", CSV): _weather_as_csv,
-    ("OpenSim table", "OpenSim table"): _to_opensim_table,
-    ("TRC markers", "TRC markers"): _to_trc(read_trc),
-    ("TRC markers", "C3D markers"): _to_c3d,
-    ("C3D markers", "TRC markers"): _to_trc(read_c3d),
+    ("OpenSim table", "OpenSim table"): lambda source, target, _: write_motion(read_motion(source), target),
+    ("TRC markers", "TRC markers"): lambda source, target, _: write_trc(read_trc(source), target),
+    ("TRC markers", "C3D markers"): _trc_as_c3d,
+    ("C3D markers", "TRC markers"): _c3d_as_trc,
 }
 """By the kinds of source and target."""

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def ski_mjcf(ski: Ski, *, segments: int = SEGMENTS, free: bool = True) -> str:
         _half_ski_xml(ski, "front", np.linspace(half, tip, front + 1)),
         _half_ski_xml(ski, "rear", np.linspace(-half, tail, segments - front + 1)),
     )
-    return f"""<mujoco model="{_quoted_name(ski.name)}">
+    return f"""<mujoco model={quoteattr(ski.name)}>
  <compiler angle="radian" autolimits="true"/>
  <option integrator="implicitfast"/>
  <worldbody>
@@ -128,10 +129,6 @@ def _box_xml(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0
 def _points(near: float, far: float) -> FloatArray:
     """Middles of equal pieces between two stations."""
     return np.asarray(near + (np.arange(POINTS) + 0.5) / POINTS * (far - near))
-
-
-def _quoted_name(name: str) -> str:
-    return name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
 
 
 class SnowForces:

@@ -6,7 +6,7 @@ Heights are above the ground in cm, as in SnowEx; -9999 means unknown.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
@@ -52,15 +52,35 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
             "--snow-height-cm"
         ).tag("unknown_name", name=pit.name)
     _require_above_ground(pit, height)
-    tables = {name: (columns, rows) for name, columns, rows in _pit_tables(pit, height) if rows}
-    if not tables:
+    densities = [
+        (*_top_and_bottom(height, density), f"{density.snow_density:g}", NO_DATA, NO_DATA) for density in pit.densities
+    ]
+    temperatures = [
+        (_centimetre_text(height - observed.depth), f"{observed.temperature_C:g}") for observed in pit.temperatures
+    ]
+    tables: dict[str, list[tuple[str, ...]]] = {
+        "density": [DENSITY, *densities],
+        "temperature": [TEMPERATURE, *temperatures],
+        "stratigraphy": [STRATIGRAPHY, *(_layer_cells(height, layer) for layer in pit.layers)],
+    }
+    head = (
+        ("# Location", pit.region or NO_DATA),
+        ("# Site", pit.name),
+        ("# PitID", pit.name),
+        ("# Date/Local Time", pit.time or NO_DATA),
+        ("# Latitude", _number_text(pit.latitude_deg)),
+        ("# Longitude", _number_text(pit.longitude_deg)),
+        ("# HS (cm)", _centimetre_text(pit.snow_height)),
+    )
+    written = []
+    for name, (columns, *rows) in tables.items():
+        if rows:
+            written.append(path.with_name(f"{path.stem}_{name}.csv"))
+            write_file(written[-1], csv_text((*head, columns, *rows)))
+    if not written:
         raise ParameterError("{name!r} has no layers, densities or temperatures; nothing was written").tag(
             "no_data", name=pit.name
         )
-    written = []
-    for name, (columns, rows) in tables.items():
-        written.append(path.with_name(f"{path.stem}_{name}.csv"))
-        write_file(written[-1], csv_text((*_pit_header(pit), columns, *rows)))
     return tuple(written)
 
 
@@ -86,33 +106,6 @@ def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
     head += [("# Latitude", _number_text(profile.latitude_deg)), ("# Longitude", _number_text(profile.longitude_deg))]
     write_file(path, csv_text((*head, FORCE, *rows)))
     return Path(path)
-
-
-def _pit_header(pit: SnowPit) -> Iterable[Sequence[str]]:
-    yield "# Location", pit.region or NO_DATA
-    yield "# Site", pit.name
-    yield "# PitID", pit.name
-    yield "# Date/Local Time", pit.time or NO_DATA
-    yield "# Latitude", _number_text(pit.latitude_deg)
-    yield "# Longitude", _number_text(pit.longitude_deg)
-    yield "# HS (cm)", _centimetre_text(pit.snow_height)
-
-
-def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], list[Sequence[str]]]]:
-    yield (
-        "density",
-        DENSITY,
-        [
-            (*_top_and_bottom(height, density), f"{density.snow_density:g}", NO_DATA, NO_DATA)
-            for density in pit.densities
-        ],
-    )
-    yield (
-        "temperature",
-        TEMPERATURE,
-        [(_centimetre_text(height - observed.depth), f"{observed.temperature_C:g}") for observed in pit.temperatures],
-    )
-    yield "stratigraphy", STRATIGRAPHY, [_layer_cells(height, layer) for layer in pit.layers]
 
 
 def _layer_cells(height: float, layer: SnowLayer) -> tuple[str, ...]:
@@ -152,12 +145,14 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     Raises ParameterError: the campaign has no such site; the message names those that it has.
     """
     campaign = analysis.campaign
-    sites = sites_of(campaign)
-    if site not in sites:
+    if site not in (sites := sites_of(campaign)):
         raise ParameterError("{name} has no site {site!r}; it has {sites}").tag(
             "no_data", name=campaign.name, site=site, sites=list(sites)
         )
-    temperatures, air = (_numbers_of_text_column(campaign, site, f"{what}_temperature_C") for what in ("snow", "air"))
+    temperatures, air = (  # numbers, which the reader of the campaign has checked
+        [float(cell.replace(",", ".")) for cell in _cells_of_site(campaign, site, f"{what}_temperature_C")]
+        for what in ("snow", "air")
+    )
     densities = tuple(_densities(campaign, site))
     profiles = tuple(_used_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
@@ -166,7 +161,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     assumed += [_NO_THICKNESS] if any(density.top and density.thickness is None for density in densities) else []
     return SnowPit(
         name=site,
-        time=min((cell for cell in _density_cells(campaign, site, "time") if cell[:4].isdigit()), default=""),
+        time=min((cell for cell in _cells_of_site(campaign, site, "time") if cell[:4].isdigit()), default=""),
         observer=", ".join(campaign.observers),
         comment=". ".join((campaign.name, " ".join(assumed))) if assumed else campaign.name,
         region=campaign.place,
@@ -184,10 +179,10 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
 
 def sites_of(campaign: Campaign) -> tuple[str, ...]:
     """Every site that a table of the campaign names, in alphabetical order."""
-    return tuple(sorted({name for table in _density_tables(campaign) for name in table[0]}))
+    return tuple(sorted({name for table in _tables_with_sites(campaign) for name in table[0]}))
 
 
-def _density_tables(campaign: Campaign) -> Iterator[tuple[tuple[str, ...], Mapping[str, tuple[str, ...]]]]:
+def _tables_with_sites(campaign: Campaign) -> Iterator[tuple[tuple[str, ...], Mapping[str, tuple[str, ...]]]]:
     """Site and further columns of each row of each table."""
     if campaign.penetration is not None:
         tests = campaign.penetration
@@ -197,8 +192,8 @@ def _density_tables(campaign: Campaign) -> Iterator[tuple[tuple[str, ...], Mappi
             yield table.site, table.further
 
 
-def _density_cells(campaign: Campaign, site: str, column: str) -> Iterator[str]:
-    for sites, further in _density_tables(campaign):
+def _cells_of_site(campaign: Campaign, site: str, column: str) -> Iterator[str]:
+    for sites, further in _tables_with_sites(campaign):
         for name, cell in zip(sites, further.get(column, ()), strict=False):
             if name == site and cell:
                 yield cell
@@ -209,11 +204,6 @@ def _station_air(analysis: Analysis, site: str) -> float | None:
     site_means = () if analysis.weather is None else analysis.weather.site_means()
     mean = next((means["air_temperature_C"] for name, _, means in site_means if name == site), math.nan)
     return mean if math.isfinite(mean) else None
-
-
-def _numbers_of_text_column(campaign: Campaign, site: str, column: str) -> list[float]:
-    """Numbers of a column that the campaign keeps as text; the reader of the campaign has checked them."""
-    return [float(cell.replace(",", ".")) for cell in _density_cells(campaign, site, column)]
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:

@@ -19,7 +19,7 @@ import skisnow.campaign.store.migrations
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
-from skisnow.campaign.store.folder import FileState, campaign_name, changed_files, unsafe_because
+from skisnow.campaign.store.folder import campaign_name, changed_files, unsafe_because
 from skisnow.campaign.store.migrations import alembic_config, downgrade, is_known, upgrade
 from skisnow.campaign.store.schema import APPLICATION_ID, REVISION, metadata
 
@@ -180,8 +180,8 @@ def test_paths_that_are_safe() -> None:
 
 
 def test_changes_between_listings() -> None:
-    before = {"same": FileState(1, 1), "grown": FileState(1, 1), "touched": FileState(1, 1), "went": FileState(1, 1)}
-    after = {"same": FileState(1, 1), "grown": FileState(2, 1), "touched": FileState(1, 2), "came": FileState(1, 1)}
+    before = {"same": (1, 1), "grown": (1, 1), "touched": (1, 1), "went": (1, 1)}
+    after = {"same": (1, 1), "grown": (2, 1), "touched": (1, 2), "came": (1, 1)}
     assert changed_files(before, after) == ["came", "grown", "touched", "went"]
 
 

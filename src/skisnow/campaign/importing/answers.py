@@ -195,30 +195,6 @@ WORDS = {
 IMPORT_OR_NOT: Final = {"yes": Message("yes (import it)"), "no": Message("no (leave it out)")}
 
 
-def ask(
-    option: str,
-    key: str,
-    place: str,
-    *,
-    value: str | None = None,
-    choices: tuple[str, ...] = (),
-    proposed: str = "",
-    row: int | None = None,
-) -> Question:
-    """Question with its error, which names the option."""
-    answer = key if option == "ignore" else f"{key}={proposed or 'ANSWER'}" if key else proposed or "ANSWER"
-    text = f'--{option} "{answer}"'
-    words = [IMPORT_OR_NOT.get(choice, choice) if key in {"hidden", "struck"} else choice for choice in choices]
-    action = (
-        Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=words)
-        if choices
-        else Message("State it in the file or by {option}.", option=text)
-    )
-    allowed = WORDS[key if option == "cells" else option]
-    problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=allowed, action=action)
-    return Question(option, key, choices, proposed, problem)
-
-
 @dataclass(slots=True)
 class Dialogue:
     """Answers of the user, with the open questions and errors so far."""
@@ -226,9 +202,29 @@ class Dialogue:
     answers: Answers
     open: list[Question | Problem] = field(default_factory=list)
 
-    def ask(self, option: str, key: str, place: str, **further: Any) -> None:
-        """Add a question; parameters as of the function `ask`."""
-        self.open.append(ask(option, key, place, **further))
+    def ask(
+        self,
+        option: str,
+        key: str,
+        place: str,
+        *,
+        value: str | None = None,
+        choices: tuple[str, ...] = (),
+        proposed: str = "",
+        row: int | None = None,
+    ) -> None:
+        """Add a question with its error, which names the option."""
+        answer = key if option == "ignore" else f"{key}={proposed or 'ANSWER'}" if key else proposed or "ANSWER"
+        text = f'--{option} "{answer}"'
+        words = [IMPORT_OR_NOT.get(choice, choice) if key in {"hidden", "struck"} else choice for choice in choices]
+        action = (
+            Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=words)
+            if choices
+            else Message("State it in the file or by {option}.", option=text)
+        )
+        allowed = WORDS[key if option == "cells" else option]
+        problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=allowed, action=action)
+        self.open.append(Question(option, key, choices, proposed, problem))
 
     def refuse(self, code: str, place: str, **further: Any) -> None:
         """Add an error; parameters as of the function `error`."""

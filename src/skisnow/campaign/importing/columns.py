@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from ..._support.messages import Message
-from ..problems import Problem, error
 from ..reading.columns import iso_moment
 from ..reading.header import NO_UNIT
 from ..reading.headings import (
@@ -26,7 +25,7 @@ from ..reading.headings import (
     units_for,
 )
 from ..reading.table_forms import TableForm
-from .answers import NONE, Dialogue, Question, ask
+from .answers import NONE, Dialogue
 from .sections import Section
 from .sheets import EXCLUDED, FROM_NOTES, HIDDEN, column_letters
 
@@ -65,7 +64,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
             allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
             action = Message("Correct --{option}.", option="column")
             dialogue.refuse("bad_answer", section.key, column=heading, value=answer, allowed=allowed, action=action)
-    dialogue.open.extend(_column_questions(section, form, stated))
+    _ask_for_columns(section, form, stated, dialogue)
     numbers, cells_below = number_columns(form), section.units or ("",) * len(section.columns)
     choices = []
     for place, heading, below, column in zip(section.columns, section.headings, cells_below, stated, strict=True):
@@ -79,30 +78,30 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     return choices
 
 
-def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) -> Iterator[Question | Problem]:
-    """Questions for required columns that no heading states, and for headings that state the same column."""
+def _ask_for_columns(section: Section, form: TableForm, stated: Sequence[str], dialogue: Dialogue) -> None:
+    """Ask for required columns that no heading states, and about headings that state the same column."""
     times = Counter(column for column in stated if column and column != NONE)
     for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
         if section.headings.index(heading) < section.columns.index(place) and column != NONE:
             excluded = f"{section.sheet.name}!{column_letters(place)}"
-            yield ask("ignore", excluded, section.key, value=heading)
+            dialogue.ask("ignore", excluded, section.key, value=heading)
         elif times[column] > 1:
             key = f"{form.name}.{heading}"
-            yield ask("column", key, section.key, value=heading, choices=(column, NONE), proposed=column)
+            dialogue.ask("column", key, section.key, value=heading, choices=(column, NONE), proposed=column)
     missing = [name for name in form.required if name not in times and name not in FROM_NOTES]
     free = [heading for heading, column in zip(section.headings, stated, strict=True) if not column]
     only = dict(zip(free, missing, strict=True)) if len(free) == len(missing) == 1 else {}
     likely = only | columns_by_synonym(form, free)
     for heading in free if missing else ():
-        proposed = likely.get(heading, NONE)
+        key, proposed = f"{form.name}.{heading}", likely.get(heading, NONE)
         choices = (*missing, *(name for name in form.known if name not in missing), NONE)
-        yield ask("column", f"{form.name}.{heading}", section.key, value=heading, choices=choices, proposed=proposed)
+        dialogue.ask("column", key, section.key, value=heading, choices=choices, proposed=proposed)
     if missing and not free:
         allowed = Message("the columns {required}", required=list(form.required))
         action = Message(
             "Add {columns} to the sheet, or name the column with --{option}.", columns=missing, option="column"
         )
-        yield error("missing_column", section.key, value=None, allowed=allowed, action=action)
+        dialogue.refuse("missing_column", section.key, value=None, allowed=allowed, action=action)
 
 
 def _stated_units(

@@ -12,24 +12,15 @@ from typing import Final, Literal
 
 from ..._support.errors import OutputError
 from ..._support.messages import Message
-from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import own_json, toml_text
 from ..reading.campaign_file import CAMPAIGN_FILE
-from ..reading.table_forms import TableForm
 from .answers import SECTION, Answers, Dialogue
 from .columns import PLATE, TOOL, Note, gauge_steps_mm, length_mm, stated_observers, stated_plates, stated_tools
 from .rows import ImportedTable
 
 ORIGINAL: Final = "original"
 RECORD: Final = f"{ORIGINAL}/import.json"
-
-
-def table_text(form: TableForm, rows: Sequence[Mapping[str, str]]) -> str:
-    """CSV of rows with the columns that they have, those of the form first."""
-    present = {name for row in rows for name in row}
-    columns = [*(name for name in form.known if name in present), *sorted(present - set(form.known))]
-    return csv_text([columns, *([row.get(column, "") for column in columns] for row in rows)])
 
 
 def description(

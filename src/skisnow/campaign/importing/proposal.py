@@ -11,14 +11,15 @@ import numpy as np
 
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
+from ..._support.spreadsheet_text import csv_text
 from ..._support.units import N_PER_MM3
 from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
 from ..reading.table_forms import TableForm
 from ..records import Campaign
-from .answers import NONE, Answers, Dialogue, Question, ask
+from .answers import NONE, Answers, Dialogue, Question
 from .columns import Note, choose_columns, is_about_numbers, stated_days, stated_sites
-from .folder import ToolText, campaign_files, described_tools, description, table_text
+from .folder import ToolText, campaign_files, described_tools, description
 from .rows import ImportedTable, StoredRow, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
 from .sheets import HIDDEN, KINDS, Sheet, read_sheets
@@ -69,11 +70,9 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
         dialogue.refuse("no_table", name, allowed=allowed, action=action)
     tables = [_import_table(section, form, dialogue, notes) for section, form in forms]
     qualifying = {(section.sheet.name, section.header) for section, _ in forms if section.qualified()}
-    dialogue.open.extend(
-        ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
-        for note in notes
-        if is_about_numbers(note) or (note.sheet, note.row) in qualifying
-    )
+    for note in notes:
+        if is_about_numbers(note) or (note.sheet, note.row) in qualifying:
+            dialogue.ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
     _refuse_repeated(tables, dialogue)
     tools = described_tools("tool", tables, dialogue, notes)
     plates = described_tools("plate", tables, dialogue, notes)
@@ -255,12 +254,17 @@ def _renamed(
 
 
 def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:
-    """Text of each CSV file, merged from all tables of its kind."""
+    """Text of each CSV file, merged from all tables of its kind, with the columns that they have."""
     by_form: dict[TableForm, list[dict[str, str]]] = {}
     for table in tables:
         if table.rows:
             by_form.setdefault(table.form, []).extend(row.cells for row in table.rows)
-    return {form.file: table_text(form, rows) for form, rows in by_form.items()}
+    texts = {}
+    for form, rows in by_form.items():
+        present = {name for row in rows for name in row}
+        columns = [*(name for name in form.known if name in present), *sorted(present - set(form.known))]
+        texts[form.file] = csv_text([columns, *([row.get(column, "") for column in columns] for row in rows)])
+    return texts
 
 
 def _template(answers: Answers, tables: Sequence[ImportedTable]) -> Answers:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
-from ..problems import Problem, error
 from ..reading.headings import letters
 from ..reading.table_forms import TableForm
 from .answers import Dialogue
@@ -57,23 +56,18 @@ class ImportedTable:
     rows: tuple[StoredRow, ...]
 
 
-def data_rows(section: Section, choices: Sequence[ColumnChoice], form: TableForm) -> list[int]:
-    """Rows with a cell below a heading of required numbers."""
-    needed = {column.name for column in form.numbers if column.needed}
-    places = [choice.place for choice in choices if choice.column in needed and choice.place in section.own]
-    return [
-        row
-        for row in range(section.start, section.end)
-        if any(section.sheet.cell(row, place) and not section.sheet.ignores(row, place) for place in places)
-    ]
-
-
 def stored_rows(
     section: Section, choices: Sequence[ColumnChoice], form: TableForm, dialogue: Dialogue
 ) -> list[StoredRow]:
-    """Rows of a section; open questions and errors are added to the dialogue."""
+    """Rows with a cell below a heading of required numbers; open questions and errors are added to the dialogue."""
     sheet, numbers = section.sheet, number_columns(form)
-    rows = data_rows(section, choices, form)
+    needed = {column.name for column in form.numbers if column.needed}
+    places = [choice.place for choice in choices if choice.column in needed and choice.place in section.own]
+    rows = [
+        row
+        for row in range(section.start, section.end)
+        if any(sheet.cell(row, place) and not sheet.ignores(row, place) for place in places)
+    ]
     used = {choice.column: choice for choice in choices if choice.column}
     mark = _decimal_mark(section, [choice for choice in used.values() if choice.column in numbers], rows, dialogue)
     stored, above = [], dict[str, str]()
@@ -82,7 +76,8 @@ def stored_rows(
             name: "" if sheet.ignores(row, choice.place) else sheet.cell(row, choice.place, filled=True)
             for name, choice in used.items()
         }
-        if _is_summary(cells, form):
+        texts = [text for name, text in cells.items() if name not in numbers and name != "remark"]
+        if any(word in _SUMMARY for text in texts for word in letters(text).split()):
             dialogue.ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=cells.get(form.key))
         _fill_down(section, row, cells, above, form, dialogue)
         above = dict(cells)
@@ -98,8 +93,8 @@ def stored_rows(
                 choice = used[name]
                 cells[name] = _number(section, row, choice, cells[name], mark, dialogue)
         stored.append(StoredRow(row + 1, cells))
-    dialogue.open.extend(_strays(section, rows))
-    dialogue.open.extend(_split_numbers(section, choices, rows, numbers))
+    _refuse_strays(section, rows, dialogue)
+    _refuse_split_numbers(section, choices, rows, numbers, dialogue)
     return stored
 
 
@@ -185,15 +180,10 @@ def _is_excluded(section: Section, row: int, places: Sequence[int], dialogue: Di
     return any(dialogue.answers.cells.get(reason) == "no" for reason in reasons)
 
 
-def _is_summary(cells: dict[str, str], form: TableForm) -> bool:
-    texts = [text for name, text in cells.items() if name not in number_columns(form) and name != "remark"]
-    return any(word in _SUMMARY for text in texts for word in letters(text).split())
-
-
-def _split_numbers(
-    section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], numbers: Sequence[str]
-) -> Iterator[Problem]:
-    """An error for whole numbers in a column of texts behind one of numbers: decimal commas that separate cells."""
+def _refuse_split_numbers(
+    section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], numbers: Sequence[str], dialogue: Dialogue
+) -> None:
+    """Add an error for whole numbers in a column of texts behind one of numbers: decimal commas that separate cells."""
     if section.sheet.separator != ",":
         return
     for before, choice in pairwise(choices):
@@ -202,14 +192,12 @@ def _split_numbers(
             if row is not None:
                 value, allowed = section.sheet.cell(row, choice.place), Message("a text below this heading")
                 action = Message("Put decimal commas in quotes, or separate the cells by semicolons.")
-                place, heading = section.sheet.name, choice.heading
-                yield error(
-                    "split_number", place, row=row + 1, column=heading, value=value, allowed=allowed, action=action
-                )
+                further = {"column": choice.heading, "value": value, "allowed": allowed, "action": action}
+                dialogue.refuse("split_number", section.sheet.name, row=row + 1, **further)
 
 
-def _strays(section: Section, rows: Sequence[int]) -> Iterator[Problem]:
-    """Errors for numbers next to the rows of a table, below no heading: a separator may have split a number."""
+def _refuse_strays(section: Section, rows: Sequence[int], dialogue: Dialogue) -> None:
+    """Add errors for numbers next to the rows of a table, below no heading: a separator may have split a number."""
     sheet = section.sheet
     for row in rows:
         right = section.own.stop
@@ -217,8 +205,6 @@ def _strays(section: Section, rows: Sequence[int]) -> Iterator[Problem]:
             if not sheet.ignores(row, right):
                 place = f"{sheet.name}!{column_letters(right)}"
                 action = Message("Add a heading, or exclude the column with --ignore {place}.", place=place)
-                column, allowed = column_letters(right), Message("cells below a heading")
-                yield error(
-                    "no_heading", sheet.name, row=row + 1, column=column, value=text, allowed=allowed, action=action
-                )
+                further = {"value": text, "allowed": Message("cells below a heading"), "action": action}
+                dialogue.refuse("no_heading", sheet.name, row=row + 1, column=column_letters(right), **further)
             right += 1

@@ -87,7 +87,14 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
     sections: list[Section] = []
     for row in dict.fromkeys(row for row, _, _ in heads):
         on_row = [_make_section(sheet, row, group, count, heads) for at, group, count in heads if at == row]
-        sections += _split_series([section for section in on_row if _has_data(section)])
+        with_data = [
+            part
+            for part in on_row
+            if any(
+                sum(bool(sheet.cell(at, column)) for column in part.columns) > 1 for at in range(part.start, part.end)
+            )
+        ]
+        sections += _split_series(with_data)
     return sections
 
 
@@ -137,12 +144,6 @@ def _joined_heading(top: str, below: str) -> str:
 
 def _stated_columns(heading: str) -> set[str]:
     return {column for form in KINDS.values() if (column := stated_column(form, heading))}
-
-
-def _has_data(section: Section) -> bool:
-    """True for a table with a row of several cells."""
-    rows = range(section.start, section.end)
-    return any(sum(bool(section.sheet.cell(row, column)) for column in section.columns) > 1 for row in rows)
 
 
 def _groups(sheet: Sheet, rows: Sequence[int]) -> Iterator[range]:
@@ -223,7 +224,9 @@ def _make_section(
         if all(map(_is_unit, third)) and any(known_unit(cell.strip("[]()")) for cell in third):
             below = [cell or part for cell, part in zip(third, below, strict=True)]
             start = row + 2
-    if parts or rows_of_headings > 1 or _is_row_of_units(below):
+    texts = [cell.strip("[]()").strip() for cell in below if cell]
+    has_units = any(map(known_unit, texts)) or len(texts) >= _FEWEST_HEADINGS
+    if parts or rows_of_headings > 1 or (has_units and not any(map(is_plain_number, texts))):
         units, start = tuple(cell.strip("[]()").strip() for cell in below), start + 1
     end = min(later, default=len(sheet.rows))
     while end > start and _is_title(sheet, end - 1, columns):
@@ -245,12 +248,6 @@ def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
     """True for a row without numbers and with at most one text below the headings: blank, or a title or note."""
     texts = [text for column in columns if (text := sheet.cell(row, column, filled=True))]
     return not texts or (len(texts) == 1 and not is_plain_number(texts[0]))
-
-
-def _is_row_of_units(cells: Sequence[str]) -> bool:
-    texts = [cell.strip("[]()").strip() for cell in cells if cell]
-    numbers = any(map(is_plain_number, texts))
-    return not numbers and (any(map(known_unit, texts)) or len(texts) >= _FEWEST_HEADINGS)
 
 
 def _split_series(sections: Sequence[Section]) -> list[Section]:

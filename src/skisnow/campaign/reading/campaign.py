@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
@@ -13,7 +13,7 @@ from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
 from ..records import Campaign
 from ..smet import CampaignWeather
-from .campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
+from .campaign_file import CAMPAIGN_FILE, CampaignFile, Description, read_campaign_file
 from .campaign_files import (
     ENDING,
     WEATHER_ENDING,
@@ -27,7 +27,6 @@ from .campaign_files import (
 from .columns import Table
 from .corrections import corrections_by_file
 from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests
-from .headings import Headings
 from .row_checks import check_rows
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
 from .tables import Cells, read_table, table_of_cells
@@ -198,42 +197,28 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
     for form in TABLES:
         raw.add_table(read_table(form, raw, progress))
     if not any(problem.severity == "error" for problem in raw.problems):
-        raw.problems.extend(_units_without_heading(raw.headings, raw.tables))
+        allowed = Message("a heading of a table")
+        action = Message("Write the heading as the table has it, or remove the line.")
+        # without an error these units would be ignored silently
+        for path in raw.headings.without_heading({file: table.headings for file, table in raw.tables.items()}):
+            name = path.rpartition(".")[2]
+            raw.problems.append(
+                error("bad_toml", CAMPAIGN_FILE, column=path, value=name, allowed=allowed, action=action)
+            )
     raw.recordings = recording_contents(raw.tables.get(SNOW_MICRO_PEN.file), raw)
     raw.weather = None if raw.described is None else campaign_weather(raw.described.weather, raw)
     names = campaign.names()
-    raw.problems.extend(_misnamed_files(names, raw.absent))
-    raw.unread = (*(name for name in _unread_files(names) if name not in raw.hashes), *campaign.unread)
+    for name in sorted(names):  # a file whose name differs by case would not be read
+        if name not in CAMPAIGN_FILES and name.lower() in raw.absent:
+            action = Message("Rename it to {name}.", name=name.lower())
+            raw.problems.append(error("unreadable_file", name, value=name, allowed=name.lower(), action=action))
+    other = [name for name in sorted(names) if names[name] and name not in (*CAMPAIGN_FILES, ATTACHMENTS, *raw.hashes)]
+    raw.unread = (*(name for name in other if not name.startswith((".", "~$"))), *campaign.unread)
     hashes = {name: sha256 for name, sha256 in raw.hashes.items() if name not in campaign.of_sheets}
     raw.hashes = hashes | campaign.hashes
     corrections = (correction for rows in raw.corrections.values() for row in rows.values() for correction in row)
     raw.applied = [correction.applied() for correction in sorted(corrections, key=lambda correction: correction.line)]
     return raw
-
-
-def _unread_files(there: Mapping[str, bool]) -> tuple[str, ...]:
-    """Files that are not part of a campaign, without hidden ones and Excel's lock files."""
-    files = sorted(name for name, is_file in there.items() if is_file)
-    return tuple(
-        name for name in files if name not in (*CAMPAIGN_FILES, ATTACHMENTS) and not name.startswith((".", "~$"))
-    )
-
-
-def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> Iterator[Problem]:
-    """Errors for units in campaign.toml whose heading is in no table, because they would be ignored silently."""
-    allowed = Message("a heading of a table")
-    action = Message("Write the heading as the table has it, or remove the line.")
-    for path in headings.without_heading({file: table.headings for file, table in tables.items()}):
-        name = path.rpartition(".")[2]
-        yield error("bad_toml", CAMPAIGN_FILE, column=path, value=name, allowed=allowed, action=action)
-
-
-def _misnamed_files(there: Mapping[str, bool], absent: set[str]) -> Iterator[Problem]:
-    """Errors for files whose names differ from the expected ones only by case, because they would not be read."""
-    for name in sorted(there):
-        if name not in CAMPAIGN_FILES and name.lower() in absent:
-            action = Message("Rename it to {name}.", name=name.lower())
-            yield error("unreadable_file", name, value=name, allowed=name.lower(), action=action)
 
 
 def read_description(files: RawFiles) -> CampaignFile | None:
@@ -266,12 +251,6 @@ def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
     return read_campaign_file(decoded.text, files.problems)
 
 
-_SAME: Final = {field.name for field in fields(CampaignFile)} & {field.name for field in fields(Campaign)} - {
-    "name", "snow_micro_pen", "weather",
-}  # fmt: skip
-"""Fields of a campaign that campaign.toml states as they are."""
-
-
 def _require_valid(raw: _RawCampaign) -> Campaign:
     """Convert a campaign to records.
 
@@ -282,9 +261,9 @@ def _require_valid(raw: _RawCampaign) -> Campaign:
         raise FieldDataError(problems)
     folder, recorded, settings = raw.files.folder, tables.get(SNOW_MICRO_PEN.file), described.snow_micro_pen
     return Campaign(
-        name=described.name or folder.resolve().name,
+        **{field.name: getattr(described, field.name) for field in fields(Description)}
+        | {"name": described.name or folder.resolve().name},
         folder=folder,
-        **{name: getattr(described, name) for name in _SAME},
         penetration=penetration_tests(tables[PENETRATION.file]) if PENETRATION.file in tables else None,
         shear=shear_tests(tables[SHEAR.file]) if SHEAR.file in tables else None,
         density=density_samples(tables[DENSITY.file]) if DENSITY.file in tables else None,

@@ -24,12 +24,18 @@ from .toml_values import TomlValues
 CAMPAIGN_FILE: Final = "campaign.toml"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignFile:
-    """Content of campaign.toml in SI; the fields are those of `skisnow.campaign.records.Campaign`.
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Description:
+    """Values in campaign.toml, in SI, that a campaign has as they are.
 
-    ``tool_names`` and ``plate_names`` include tools and plates with invalid lengths. ``flat_tools`` are the tools
-    without an edge, whose edge angle must be 0.
+    name, place, observers: texts; the default name is that of the folder.
+    gauge_resolution: step of the depth gauge (m), or None if not stated.
+    load_uncertainty, moment_uncertainty, lever_arm_uncertainty: standard uncertainties (N, N m, m); None counts as 0.
+    seating: standard deviation of the depth zero from series to series (m); None where not stated.
+    pole_stiffness: moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
+    load_steps: loads of the campaign's discs (N), for entry; can be empty.
+    tools, plates: tools by name; plate lengths L (m) by name.
+    excluding: codes of the quality flags that keep an experiment out of the estimates.
     """
 
     name: Annotated[str | None, Quantity("name", "name of the campaign; left out or blank: the folder's", blank=True)]
@@ -81,10 +87,20 @@ class CampaignFile:
     ] = ()
     tools: Mapping[str, Tool]
     plates: Mapping[str, float]
+    excluding: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignFile(Description):
+    """Content of campaign.toml in SI.
+
+    ``tool_names`` and ``plate_names`` include tools and plates with invalid lengths. ``flat_tools`` are the tools
+    without an edge, whose edge angle must be 0.
+    """
+
     tool_names: frozenset[str]
     plate_names: frozenset[str]
     flat_tools: frozenset[str]
-    excluding: frozenset[str]
     headings: Headings
     snow_micro_pen: SnowMicroPenSettings
     weather: WeatherSettings

@@ -19,6 +19,7 @@ from ..snow_micro_pen import SnowMicroPenRecordings, SnowMicroPenSettings, parse
 from .campaign_file import CAMPAIGN_FILE
 from .columns import Table
 from .corrections import RowCorrections
+from .experiments import single_rows
 from .headings import Headings
 from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN, TableForm
@@ -209,18 +210,12 @@ def snow_micro_pen_recordings(
     table: Table, contents: Mapping[str, bytes], settings: SnowMicroPenSettings
 ) -> SnowMicroPenRecordings:
     """Convert a valid table to recordings."""
-    file = table.names["file"].cells()
     return SnowMicroPenRecordings(
-        recording=table.names["recording"].cells(),
-        site=table.names["site"].cells(),
+        **single_rows(table),
         spot=table.names["spot"].cells(),
-        file=file,
         surface=table.numbers["surface_mm"] * MM,
-        cancelled=table.names["status"].cells(),
-        row=table.row,
-        contents=tuple(contents[name] for name in file),
+        contents=tuple(contents[name] for name in table.names["file"].cells()),
         settings=settings,
-        further=table.further,
     )
 
 

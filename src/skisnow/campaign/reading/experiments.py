@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import compress
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -150,7 +150,6 @@ def _mixed_error(table: Table, row: int, reference: int, column: str, value: str
 def penetration_tests(table: Table) -> PenetrationTests:
     """Convert a valid table to penetration experiments."""
     blocks = Blocks.of_runs(table.names["experiment"])
-    spot = table.names["spot"]
     taken_off = is_unloading(table.names[BRANCH])
     is_unloaded = bool(taken_off.any())
     laid_on = ~taken_off if is_unloaded else slice(None)
@@ -159,31 +158,35 @@ def penetration_tests(table: Table) -> PenetrationTests:
     if is_unloaded:
         further = {name: tuple(compress(cells, counted)) for name, cells in further.items()}
     return PenetrationTests(
-        experiment=_cells_at(table.names["experiment"], blocks.start),
-        site=_cells_at(table.names["site"], blocks.start),
-        tool=_cells_at(table.names["tool"], blocks.start),
-        spot=_cells_at(spot, blocks.first_chosen(~spot.is_blank)),
-        edge_angle=table.numbers["edge_angle_deg"][blocks.start] * DEGREE,
-        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
-        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
-        cancelled=blocks.texts(table.names["status"]),
+        **_experiments(table, blocks, blocks.start),
         first=blocks.first_of(~taken_off),
         load=table.numbers["load_N"][laid_on],
         penetration_depth=table.numbers["depth_mm"][laid_on] * MM,
         row=table.row[laid_on],
         further=further,
-        unloading=_unloading_readings(table, blocks, taken_off) if is_unloaded else None,
+        unloading=UnloadingReadings(
+            first=blocks.first_of(taken_off),
+            load=table.numbers["load_N"][taken_off],
+            penetration_depth=table.numbers["depth_mm"][taken_off] * MM,
+            row=table.row[taken_off],
+        )
+        if is_unloaded
+        else None,
         depth_after=None if np.isnan(after).all() else after * MM,
     )
 
 
-def _unloading_readings(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:
-    return UnloadingReadings(
-        first=blocks.first_of(taken_off),
-        load=table.numbers["load_N"][taken_off],
-        penetration_depth=table.numbers["depth_mm"][taken_off] * MM,
-        row=table.row[taken_off],
-    )
+def _experiments(table: Table, blocks: Blocks, rows: IntArray) -> dict[str, Any]:
+    """Fields that penetration and shear experiments share; names and angles are those of one row of each."""
+    spot = table.names["spot"]
+    return {
+        **{name: _cells_at(table.names[name], rows) for name in table.form.names},
+        "spot": _cells_at(spot, blocks.first_chosen(~spot.is_blank)),
+        "edge_angle": table.numbers["edge_angle_deg"][rows] * DEGREE,
+        "snow_density": blocks.means(table.numbers["snow_density_kg_per_m3"]),
+        "drop_cone_depth": blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
+        "cancelled": blocks.texts(table.names["status"]),
+    }
 
 
 def shear_tests(table: Table) -> ShearTests:
@@ -195,19 +198,11 @@ def shear_tests(table: Table) -> ShearTests:
     moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
     largest = blocks.first_chosen(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
     is_turned = ~np.isnan(angle)
-    spot = table.names["spot"]
     return ShearTests(
-        experiment=_cells_at(table.names["experiment"], largest),
-        site=_cells_at(table.names["site"], largest),
-        plate=_cells_at(table.names["plate"], largest),
-        spot=_cells_at(spot, blocks.first_chosen(~spot.is_blank)),
-        edge_angle=table.numbers["edge_angle_deg"][largest] * DEGREE,
+        **_experiments(table, blocks, largest),
         penetration_depth=table.numbers["depth_mm"][largest] * MM,
         lever_arm=table.numbers["lever_arm_mm"][largest] * MM,
         moment=moment[largest],
-        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
-        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
-        cancelled=blocks.texts(table.names["status"]),
         row=table.row[largest],
         further={name: tuple(cells[row] for row in largest.tolist()) for name, cells in table.further.items()},
         turning=TurningReadings(blocks.first_of(is_turned), angle[is_turned] * DEGREE, moment[is_turned])
@@ -219,28 +214,22 @@ def shear_tests(table: Table) -> ShearTests:
 def density_samples(table: Table) -> DensitySamples:
     """Convert a valid table to density samples."""
     return DensitySamples(
-        sample=table.names["sample"].cells(),
-        site=table.names["site"].cells(),
+        **single_rows(table),
         snow_density=table.numbers["snow_density_kg_per_m3"],
         sample_depth=table.numbers["sample_depth_mm"] * MM,
         sample_thickness=table.numbers["sample_thickness_mm"] * MM,
-        cancelled=_cancellation_reasons(table),
-        row=table.row,
-        further=table.further,
     )
 
 
 def drop_cone_tests(table: Table) -> DropConeTests:
     """Convert a valid table to the repeats of drop-cone tests."""
-    return DropConeTests(
-        test=table.names["test"].cells(),
-        site=table.names["site"].cells(),
-        repeat=table.names["repeat"].cells(),
-        drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
-        cancelled=_cancellation_reasons(table),
-        row=table.row,
-        further=table.further,
-    )
+    return DropConeTests(**single_rows(table), drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM)
+
+
+def single_rows(table: Table) -> dict[str, Any]:
+    """Fields that all records have in which each row of the file counts alone: names, cancellations, lines, texts."""
+    names = {name: table.names[name].cells() for name in table.form.names}
+    return {**names, "cancelled": _cancellation_reasons(table), "row": table.row, "further": table.further}
 
 
 def _cells_at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import difflib
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from ..._support.messages import Message, joined, template
@@ -97,8 +97,28 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
         error("unreadable_file", form.file, row=header.row, column=name, value=name, allowed=allowed, action=action)
         for name in repeated
     ]
-    problems += [_missing_column_problem(form, name, unknown, header.row) for name in missing]
-    problems += [_unknown_error(form, name, header) for name in unknown]
+    as_written = {heading.lower(): heading for heading in unknown}
+    likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
+    for name in missing:
+        near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
+        meant = as_written[near[0]] if near else likely.get(name)
+        action = _advise_mapping(meant, name) if meant else Message("Add it; the unit belongs to the name.")
+        allowed = Message("the columns {required}", required=list(form.required))
+        problems.append(
+            error("missing_column", form.file, row=header.row, column=name, value=meant, allowed=allowed, action=action)
+        )
+    free = [name for name in form.known if name not in header.columns]
+    for name in unknown:
+        near = difflib.get_close_matches(name, free, n=1)
+        action = Message("The column is kept as text and not interpreted; no action is needed.")
+        if near:
+            kept = Message("The column is kept as text and not interpreted.")
+            action = joined([kept, _advise_mapping(name, near[0])])
+        allowed = Message("the columns {known}", known=list(form.known))
+        note = warning(
+            "unknown_column", form.file, row=header.row, column=name, value=name, allowed=allowed, action=action
+        )
+        problems.append(replace(note, needs_action=bool(near)))
     return problems
 
 
@@ -120,16 +140,6 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
     return error("missing_column", form.file, row=header.row, allowed=allowed, action=action)
 
 
-def _missing_column_problem(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
-    as_written = {heading.lower(): heading for heading in unknown}
-    near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
-    likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
-    meant = as_written[near[0]] if near else likely.get(name)
-    action = _advise_mapping(meant, name) if meant else Message("Add it; the unit belongs to the name.")
-    allowed = Message("the columns {required}", required=list(form.required))
-    return error("missing_column", form.file, row=row, column=name, value=meant, allowed=allowed, action=action)
-
-
 def _advise_mapping(heading: str, column: str) -> Message:
     if not unit_of_column(column):
         advice = template("Did you mean {column!r}? Rename {heading!r}, or map it under [columns] in campaign.toml.")
@@ -139,25 +149,6 @@ def _advise_mapping(heading: str, column: str) -> Message:
             "[columns] in campaign.toml, which converts them."
         )
     return Message(advice, heading=heading, column=column)
-
-
-def _unknown_error(form: TableForm, name: str, header: Header) -> Problem:
-    free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
-    near = difflib.get_close_matches(name, free, n=1)
-    action = Message("The column is kept as text and not interpreted; no action is needed.")
-    if near:
-        kept = Message("The column is kept as text and not interpreted.")
-        action = joined([kept, _advise_mapping(name, near[0])])
-    return warning(
-        "unknown_column",
-        form.file,
-        row=header.row,
-        column=name,
-        value=name,
-        allowed=Message("the columns {known}", known=list(form.known)),
-        action=action,
-        needs_action=bool(near),
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,20 +195,13 @@ def column_units(form: TableForm, header: Header, headings: Headings, problems: 
             problems.append(_unit_error(form, heading, column, header.row, allowed, action))
         else:
             conversions[column] = size
-            problems += [_conversion_note(form, heading, column, size.name)] if size.changes else []
+            if size.changes:
+                value = f"{heading} converted from {size.name}"
+                allowed = Message("numbers in the unit of {column}", column=column)
+                action = Message("The numbers were converted; no action is needed.")
+                note = warning("converted_unit", form.file, column=column, value=value, allowed=allowed, action=action)
+                problems.append(replace(note, needs_action=False))
     return ColumnUnits(conversions, unstated)
-
-
-def _conversion_note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
-    return warning(
-        "converted_unit",
-        form.file,
-        column=column,
-        value=f"{heading} converted from {unit}",
-        allowed=Message("numbers in the unit of {column}", column=column),
-        action=Message("The numbers were converted; no action is needed."),
-        needs_action=False,
-    )
 
 
 def _unit_error(form: TableForm, heading: str, column: str, row: int, allowed: Message, action: Message) -> Problem:

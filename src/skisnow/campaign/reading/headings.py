@@ -22,40 +22,35 @@ FORMS: Final = {form.name: form for form in (*TABLES, CORRECTIONS)}
 
 @dataclass(frozen=True, slots=True)
 class Headings:
-    """Mapping of plain headings to columns and units.
+    """Columns and units by the file of a table, "" for all tables, and by plain heading; those of one table override.
 
-    everywhere: columns in all tables.
-    of_table: columns in one table, by its file; they override `everywhere`.
-    units, units_of_table: units of the numbers below headings, likewise.
+    columns, units: names of the columns, and units of the numbers below the headings.
     """
 
-    everywhere: Mapping[str, str] = field(default_factory=dict)
-    of_table: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
-    units_of_table: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    columns: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    units: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     def name(self, form: TableForm, heading: str) -> str:
         """Column of a heading, or the heading itself if it is not mapped."""
-        plain = plain_heading(heading)
-        own = self.of_table.get(form.file, {}).get(plain)
-        if own is not None:
-            return own
-        name = self.everywhere.get(plain)
-        return name if name is not None and name in form.known else heading
+        name = _entry(self.columns, form, heading)
+        return name if name in form.known else heading
 
     def unit(self, form: TableForm, heading: str) -> str:
         """Unit that campaign.toml states for a heading of a table, otherwise ""."""
-        plain = plain_heading(heading)
-        return self.units_of_table.get(form.file, {}).get(plain) or self.units.get(plain, "")
+        return _entry(self.units, form, heading)
 
     def without_heading(self, headings: Mapping[str, Sequence[str]]) -> Iterator[str]:
         """Paths of stated units whose heading is in no table; `headings` are those of each table by file."""
         there = {file: {plain_heading(heading) for heading in names} for file, names in headings.items()}
-        everywhere = set().union(*there.values())
-        yield from (f"{UNITS_KEY}.{name}" for name in self.units if name not in everywhere)
-        for file, units in self.units_of_table.items():
-            table = file.removesuffix(".csv")
-            yield from (f"{UNITS_KEY}.{table}.{name}" for name in units if name not in there.get(file, set()))
+        there[""] = set().union(*there.values())
+        for file, units in self.units.items():
+            section = ".".join(filter(None, (UNITS_KEY, file.removesuffix(".csv"))))
+            yield from (f"{section}.{name}" for name in units if name not in there.get(file, set()))
+
+
+def _entry(entries: Mapping[str, Mapping[str, str]], form: TableForm, heading: str) -> str:
+    plain = plain_heading(heading)
+    return next((entries[file][plain] for file in (form.file, "") if plain in entries.get(file, {})), "")
 
 
 def plain_heading(heading: str) -> str:
@@ -69,28 +64,27 @@ def plain_heading(heading: str) -> str:
 
 def parse_headings(top: TomlValues) -> Headings:
     """Read ``[columns]`` and ``[units]``; each for all tables, or for one under ``[columns.penetration]``."""
-    return Headings(*_by_table(top.table(KEY), _name), *_by_table(top.table(UNITS_KEY), _unit))
+    return Headings(_by_table(top.table(KEY), _name), _by_table(top.table(UNITS_KEY), _unit))
 
 
 Entry: TypeAlias = "Callable[[TomlValues, str, tuple[str, ...]], str]"
 
 
-def _by_table(section: TomlValues, entry: Entry) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Entries by plain heading: those for all tables, and by file those for one table.
+def _by_table(section: TomlValues, entry: Entry) -> dict[str, dict[str, str]]:
+    """Entries of a section by the file of a table, "" for all tables, and by plain heading.
 
     entry: reader of the value of a heading in a section, given the names of the columns; "" for an invalid one.
     """
-    everywhere: dict[str, str] = {}
-    of_table: dict[str, dict[str, str]] = {}
+    entries: dict[str, dict[str, str]] = {"": {}}
     every_name = tuple(dict.fromkeys(name for form in FORMS.values() for name in form.known))
     for heading, value in section.values.items():
         if heading in FORMS and isinstance(value, Mapping):
-            form, table = FORMS[heading], section.table(heading)
-            entries = {plain_heading(name): entry(table, name, form.known) for name in table.values}
-            of_table[form.file] = {name: text for name, text in entries.items() if text}
-        elif text := entry(section, heading, every_name):
-            everywhere[plain_heading(heading)] = text
-    return everywhere, of_table
+            file, known, table = FORMS[heading].file, FORMS[heading].known, section.table(heading)
+            texts = {name: entry(table, name, known) for name in table.values}
+        else:
+            file, texts = "", {heading: entry(section, heading, every_name)}
+        entries.setdefault(file, {}).update({plain_heading(name): text for name, text in texts.items() if text})
+    return entries
 
 
 def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> str:

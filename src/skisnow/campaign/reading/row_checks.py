@@ -1,55 +1,51 @@
-"""Checks of the rows of a table: units, angles, branches, turning angles, and repeated rows."""
+"""Checks of the rows of a table: units, angles, branches, turning angles, and repeated rows.
+
+Numbers that are probably in another unit than their column's name states (kN, metres, N mm, g/cm³) are used unchanged,
+with a warning. A whole file in another unit is recognised by its median, single rows by their distance from it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ..._support.arrays import BoolArray
 from ..._support.messages import Message
+from ..._support.units import DEGREE, MM, N_PER_MM3
 from ..problems import Problem, warning
 from .campaign_file import CAMPAIGN_FILE, CampaignFile
 from .columns import Table, is_unloading
 from .experiments import Blocks, check_one_number, check_one_site, check_series, shear_blocks
-from .implausible_units import check_likely_units, check_missing_units
 from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRATION, SHEAR, UNLOADING
 
 
 def check_rows(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     """Problems between the rows of a table, and between the table and campaign.toml."""
-    yield from check_likely_units(table)
-    yield from check_missing_units(table, described)
+    yield from _check_likely_units(table)
+    yield from _check_missing_units(table, described)
     if table.form in (DENSITY, DROP_CONE):
-        yield from check_repeated_rows(table)
+        yield from _check_repeated_rows(table)
     if table.form == PENETRATION:
-        yield from _check_penetration(table, described)
+        blocks = Blocks.of_runs(table.names["experiment"])
+        yield from check_series(table, blocks)
+        yield from _check_branches(table, blocks)
+        yield from _check_angles(table, blocks, described)
+        if described is not None:
+            yield from _unknown_names(table, blocks, "tool", described.tool_names)
     elif table.form == SHEAR:
-        yield from _check_shear(table, described)
+        blocks = shear_blocks(table)
+        yield from check_series(table, blocks)
+        yield from check_one_number(table, blocks, "depth_mm")
+        yield from check_one_number(table, blocks, "lever_arm_mm")
+        yield from _check_angles(table, blocks, described)
+        if described is not None:
+            yield from _unknown_names(table, blocks, "plate", described.plate_names)
     elif table.form == DROP_CONE:
         yield from check_one_site(table)
-
-
-def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    blocks = Blocks.of_runs(table.names["experiment"])
-    yield from check_series(table, blocks)
-    yield from check_branches(table, blocks)
-    yield from check_unit(table)
-    yield from check_steepness(table, blocks)
-    if described is not None:
-        yield from check_flat_tools(table, blocks, described.flat_tools)
-        yield from _unknown_names(table, blocks, "tool", described.tool_names)
-
-
-def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    blocks = shear_blocks(table)
-    yield from check_series(table, blocks)
-    yield from check_one_number(table, blocks, "depth_mm")
-    yield from check_one_number(table, blocks, "lever_arm_mm")
-    yield from check_unit(table)
-    if described is not None:
-        yield from _unknown_names(table, blocks, "plate", described.plate_names)
 
 
 def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: frozenset[str]) -> Iterator[Problem]:
@@ -79,8 +75,8 @@ SMALLEST_LIKELY_DEG: Final = 1.6
 """Just above π/2: a file with only smaller angles is probably in radians."""
 
 
-def check_unit(table: Table) -> Iterator[Problem]:
-    """Warning if all angles of the file above 0 look like radians."""
+def _check_angles(table: Table, blocks: Blocks, described: CampaignFile | None) -> Iterator[Problem]:
+    """Warnings of a file in radians and of penetration beyond the measured angles; errors for tilted flat tools."""
     angle = table.numbers[COLUMN]
     tilted = angle[angle > 0]
     if len(tilted) and float(tilted.max()) < SMALLEST_LIKELY_DEG:
@@ -93,31 +89,19 @@ def check_unit(table: Table) -> Iterator[Problem]:
             action=Message("If these are radians multiply them by 57.29578; if they are degrees no action is needed."),
         )
 
-
-def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Warning of each experiment at a larger edge angle than in the paper."""
-    steep = table.numbers[COLUMN] > STEEPEST_MEASURED_DEG
-    for row in _once_per_block(steep, blocks):
-        allowed = Message(
-            "penetration was measured up to {steepest_measured_deg:g} degrees so far",
-            steepest_measured_deg=STEEPEST_MEASURED_DEG,
-        )
+    if table.form != PENETRATION:
+        return
+    for row in _once_per_block(angle > STEEPEST_MEASURED_DEG, blocks):
+        allowed = Message("penetration was measured up to {angle:g} degrees so far", angle=STEEPEST_MEASURED_DEG)
         action = Message("The computation continues; check the angle.")
-        yield table.warning(
-            row, "angle_above_60", COLUMN, f"{table.numbers[COLUMN][row]:g}", allowed=allowed, action=action
-        )
-
-
-def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -> Iterator[Problem]:
-    """Errors for tilted tools without an edge."""
+        yield table.warning(row, "angle_above_60", COLUMN, f"{angle[row]:g}", allowed, action)
+    flat_tools = frozenset[str]() if described is None else described.flat_tools
     tool = table.names["tool"]
     is_flat = np.array([name in flat_tools for name in tool.names], dtype=np.bool_)[tool.code]
-    for row in _once_per_block(is_flat & (table.numbers[COLUMN] > 0), blocks):
+    for row in _once_per_block(is_flat & (angle > 0), blocks):
         allowed = Message("0 for the tool {tool!r}, which has no edge", tool=tool[row])
         action = Message("Write 0, or name the tool that was used.")
-        yield table.error(
-            row, "out_of_range", COLUMN, f"{table.numbers[COLUMN][row]:g}", allowed=allowed, action=action
-        )
+        yield table.error(row, "out_of_range", COLUMN, f"{angle[row]:g}", allowed, action)
 
 
 def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
@@ -127,41 +111,32 @@ def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
     return numbers
 
 
-def check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
+def _check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
     """Errors for unknown branches, loading after unloading, and series without loading."""
     branch = table.names[BRANCH]
     unknown = np.array([name.casefold() not in BRANCHES for name in branch.names], dtype=np.bool_)[branch.code]
-    for row in np.flatnonzero(unknown).tolist():
-        yield _refusal(
-            table,
-            row,
-            "out_of_range",
-            Message("{loading}, {unloading} or nothing, which is {loading}", loading=LOADING, unloading=UNLOADING),
-        )
     taken_off = is_unloading(branch)
     same = blocks.of_row[1:] == blocks.of_row[:-1]
-    for row in (np.flatnonzero(same & taken_off[:-1] & ~taken_off[1:]) + 1).tolist():
-        yield _refusal(
-            table, row, "branch_order", Message("{branch}: a row of this experiment before it is", branch=UNLOADING)
-        )
-    for row in blocks.start[taken_off[blocks.start]].tolist():
-        yield _refusal(
-            table, row, "branch_order", Message("{branch}: an experiment begins under its first load", branch=LOADING)
-        )
-
-
-def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
+    words = Message("{loading}, {unloading} or nothing, which is {loading}", loading=LOADING, unloading=UNLOADING)
+    later = Message("{branch}: a row of this experiment before it is", branch=UNLOADING)
+    first = Message("{branch}: an experiment begins under its first load", branch=LOADING)
     action = Message(
         "Correct the cell; the rows are in the order of reading, and a second loading is another experiment."
     )
-    return table.error(row, code, BRANCH, table.names[BRANCH][row], allowed=allowed, action=action)
+    for rows, code, allowed in (
+        (np.flatnonzero(unknown), "out_of_range", words),
+        (np.flatnonzero(same & taken_off[:-1] & ~taken_off[1:]) + 1, "branch_order", later),
+        (blocks.start[taken_off[blocks.start]], "branch_order", first),
+    ):
+        for row in rows.tolist():
+            yield table.error(row, code, BRANCH, branch[row], allowed, action)
 
 
 MOST_LISTED: Final = 1000
 """Maximum number of repeated rows that are listed."""
 
 
-def check_repeated_rows(table: Table) -> Iterator[Problem]:
+def _check_repeated_rows(table: Table) -> Iterator[Problem]:
     """Warning of each row that equals an earlier one, up to `MOST_LISTED`."""
     names = [column.cells() for column in table.names.values()]
     numbers = [np.where(np.isfinite(column), column, -np.inf).tolist() for column in table.numbers.values()]
@@ -175,3 +150,186 @@ def check_repeated_rows(table: Table) -> Iterator[Problem]:
             action = Message("It counts again in the mean of its site: remove the row if it was pasted twice.")
             value = f"the same as row {int(table.row[earlier])}"
             yield table.warning(index, "repeated_row", None, value, allowed, action)
+
+
+FAR: Final = 500.0
+"""Factor from the median of its column beyond which a number is reported: loads of one campaign span less."""
+
+
+@dataclass(frozen=True, slots=True)
+class LikelyColumn:
+    """Likely range of the median of a column's numbers above 0, and True if single rows are checked, too."""
+
+    low: float
+    high: float
+    unit: str
+    if_low: str
+    if_high: str
+    each_row: bool = True
+
+
+LIKELY: Final = {
+    "load_N": LikelyColumn(2.0, 20_000.0, "N", "kN", "mN or g"),
+    "depth_mm": LikelyColumn(0.02, 500.0, "mm", "m", "µm", each_row=False),
+    "lever_arm_mm": LikelyColumn(40.0, 5000.0, "mm", "m or cm", "µm"),
+    "moment_Nm": LikelyColumn(0.1, 1000.0, "N m", "kN m", "N mm or N cm"),
+    "snow_density_kg_per_m3": LikelyColumn(20.0, 917.0, "kg/m³", "g/cm³", "g/m³"),
+    "drop_cone_depth_mm": LikelyColumn(0.5, 300.0, "mm", "m", "µm"),
+}
+"""Wide limits (assumption): what the paper measured lies well inside, with 12-492 N, 2-12 mm and 420-740 kg/m³."""
+
+
+def _check_likely_units(table: Table) -> Iterator[Problem]:
+    """Warn of each column whose numbers, as a whole or in single rows, look like another unit.
+
+    A whole column below a heading without a unit is an error of `_check_missing_units`.
+    """
+    for name, likely in LIKELY.items():
+        middle = _median(table, name)
+        if middle is None:
+            continue
+        unlikely = _unlikely_median(table, name)
+        if unlikely is not None and name not in table.unstated:
+            yield _warn_of_column(table, name, likely, *unlikely)
+        elif unlikely is None and likely.each_row:
+            values = table.numbers[name]
+            above_zero = np.flatnonzero(values > 0)
+            ratio = values[above_zero] / middle
+            far = above_zero[(ratio > FAR) | (ratio < 1.0 / FAR)]
+            if len(far):
+                yield _warn_of_rows(table, name, likely, middle, far.tolist())
+
+
+def _unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
+    """Median of the numbers of a column of `LIKELY` above 0 and the unit they look like; None if it is likely."""
+    middle, likely = _median(table, name), LIKELY[name]
+    if middle is None or likely.low <= middle <= likely.high:
+        return None
+    return middle, likely.if_low if middle < likely.low else likely.if_high
+
+
+def _median(table: Table, name: str) -> float | None:
+    values = table.numbers.get(name, np.zeros(0))
+    above_zero = values[values > 0]
+    return float(np.median(above_zero)) if len(above_zero) else None
+
+
+def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
+    allowed = Message(
+        "numbers in {unit}; medians of {low:g} to {high:g} are usual",
+        unit=likely.unit,
+        low=likely.low,
+        high=likely.high,
+    )
+    action = Message(
+        "If these are {unit} convert them to {unit_2}; if they are {unit_2} no action is needed.",
+        unit=unit,
+        unit_2=likely.unit,
+    )
+    return warning(
+        "unlikely_unit", table.form.file, column=name, value=f"a median of {middle:g}", allowed=allowed, action=action
+    )
+
+
+def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
+    value = table.numbers[name][rows[0]]
+    more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
+    allowed = Message(
+        "numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}",
+        unit=likely.unit,
+        far=FAR,
+        middle=middle,
+    )
+    other = likely.if_low if value < middle else likely.if_high
+    action = Message("Look whether this is {value} or a slip of the pen.", value=other)
+    return table.warning(rows[0], "unlikely_unit", name, f"{value:g}{more}", allowed, action)
+
+
+LARGEST_LOAD: Final = 80.0
+"""A tool whose loads are whole or half numbers below it may have been loaded in kg: a person weighs about as much."""
+LONGEST_LEVER_ARM: Final = 5000.0
+"""In mm; no torque wrench is longer."""
+SHORTEST_LEVER_ARM: Final = 100.0
+"""In mm; a smaller median is the length of a torque wrench in cm or m (modelling assumption)."""
+HARDEST: Final = 90.0
+"""In N/mm³; the hardest snow that was measured. A tool with a harder median may have depths in cm."""
+_METRES: Final = 5.0
+"""Median below which the numbers are metres rather than centimetres."""
+
+
+def _check_missing_units(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    """Errors for columns whose heading states no unit and whose numbers suggest another unit."""
+    if table.form == PENETRATION:
+        yield from _loads_and_depths_of_tools(table, described)
+    if table.form == SHEAR and "lever_arm_mm" in table.unstated:
+        yield from _lever_arms(table)
+    for name in table.unstated:
+        unlikely = _unlikely_median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
+        if unlikely is not None:
+            middle, unit = unlikely
+            yield _missing_unit(table, name, f"with a median of {middle:g}", unit.split(" or ", 1)[0])
+
+
+def _loads_and_depths_of_tools(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    """One error for each tool whose loads may be in kg, and for each whose depths may be in cm.
+
+    Loads in kg are all small and whole or half numbers, as discs are. The median H_V of depths in cm, taken as mm,
+    exceeds any measured one.
+    """
+    tool, load, depth = table.names["tool"], table.numbers["load_N"], table.numbers["depth_mm"]
+    for code, name in enumerate(tool.names if "load_N" in table.unstated else ()):
+        loaded = np.flatnonzero((tool.code == code) & np.isfinite(load))
+        if len(loaded) and load[loaded].max() < LARGEST_LOAD and not np.any(2.0 * load[loaded] % 1.0):
+            values = f"{load[loaded].min():g} to {load[loaded].max():g} with tool {name}"
+            yield _missing_unit(table, "load_N", values, "kg", int(loaded[0]))
+    for code, name in enumerate(tool.names if "depth_mm" in table.unstated else ()):
+        rows = np.flatnonzero((tool.code == code) & np.isfinite(depth)).tolist()
+        if described is None or name not in described.tools or not rows:
+            continue
+        largest = _largest_loads(table, rows)
+        volume = described.tools[name].displaced_volume(
+            depth[largest] * MM, table.numbers["edge_angle_deg"][largest] * DEGREE
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):
+            hardness = load[largest] / volume / N_PER_MM3
+        hardness = np.sort(hardness[np.isfinite(hardness)])
+        if len(hardness) and hardness[(len(hardness) - 1) // 2] > HARDEST:
+            values = f"{depth[rows].min():g} to {depth[rows].max():g} with tool {name}"
+            yield _missing_unit(table, "depth_mm", values, "cm", rows[0])
+
+
+def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
+    """Row of each experiment's largest load, from the given rows that do not unload; the first row if all unload."""
+    load, unloading, key = table.numbers["load_N"], is_unloading(table.names[BRANCH]), table.names[table.form.key].code
+    largest: dict[int, int] = {}
+    for row in rows:
+        before = largest.get(int(key[row]))
+        if not unloading[row] and (before is None or load[row] >= load[before]):
+            largest[int(key[row])] = row
+    return list(largest.values()) or list(rows[:1])
+
+
+def _lever_arms(table: Table) -> Iterator[Problem]:
+    """An error for lever arms above 5 m in mm, or of the size of torque wrenches in cm or m."""
+    arm = table.numbers["lever_arm_mm"]
+    rows = np.flatnonzero(np.isfinite(arm)).tolist()
+    if not rows:
+        return
+    middle, longest = float(np.median(arm[rows])), float(arm[rows].max())
+    if middle < SHORTEST_LEVER_ARM or longest > LONGEST_LEVER_ARM:
+        unit = "µm" if longest > LONGEST_LEVER_ARM else "m" if middle < _METRES else "cm"
+        yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", unit, rows[0])
+
+
+def _missing_unit(table: Table, column: str, values: str, unit: str, row: int = 0) -> Problem:
+    heading = table.unstated[column]
+    line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
+    allowed = Message("numbers whose unit is stated")
+    action = Message(
+        "They look like {unit}. State the unit: in the heading, such as {heading} [{unit}], or at the top of "
+        "campaign.toml, such as {line}.",
+        heading=heading,
+        unit=unit,
+        line=line,
+    )
+    return table.error(row, "unit_missing", column, f"{heading}: {values}", allowed=allowed, action=action)

@@ -60,7 +60,10 @@ def read_table(form: TableForm, files: RawFiles, progress: Callable[[str], None]
             errors += sum(problem.severity == "error" for problem in files.problems[counted:])
             counted = len(files.problems)
             if errors > MOST_ERRORS and rows:
-                raise _too_many_errors(lines[0], errors)
+                allowed = Message("at most {most_errors} errors in a table", most_errors=MOST_ERRORS)
+                action = Message("The rest was not read. Correct the rows above, or check that this is the right file.")
+                value = f"{errors} errors above it"
+                raise UnreadableTextError(row=lines[0], value=value, allowed=allowed, action=action)
             if reading is None and rows:
                 reading = TableReading(form, files, split_header(lines, rows), text)
             if reading is not None and rows:
@@ -82,15 +85,6 @@ def table_of_cells(form: TableForm, cells: Cells, files: RawFiles) -> Table | No
     reading = TableReading(form, files, Header(cells.columns, 1))
     reading.take(list(cells.lines), list(cells.rows))
     return reading.finish(readable=True)
-
-
-def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
-    return UnreadableTextError(
-        row=line,
-        value=f"{errors} errors above it",
-        allowed=Message("at most {most_errors} errors in a table", most_errors=MOST_ERRORS),
-        action=Message("The rest was not read. Correct the rows above, or check that this is the right file."),
-    )
 
 
 def _empty_error(form: TableForm, what: str) -> Problem:

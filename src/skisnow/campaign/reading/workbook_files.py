@@ -75,15 +75,15 @@ def unfold_workbooks(files: CampaignFiles) -> UnfoldedFiles:
         }
         form = max(shares, key=lambda form: shares[form])
         if shares[form] >= _LIKELY and form.file not in {*names, *workbooks.of_sheets}:
-            workbooks.problems.append(_misnamed_sheet(place, form.name))
+            action = Message(
+                "It looks like {table}: call the sheet so if it is. Otherwise no action is needed.", table=form.name
+            )
+            allowed, sheet = (
+                Message("sheets called {names}", names=[*DESCRIBING, *FORMS]),
+                place.rpartition(", sheet ")[2],
+            )
+            workbooks.problems.append(warning("unread_sheet", place, value=sheet, allowed=allowed, action=action))
     return workbooks
-
-
-def _misnamed_sheet(place: str, table: str) -> Problem:
-    names = ", ".join(("campaign", "tools", "plates", "columns", *FORMS))
-    action = Message("It looks like {table}: call the sheet so if it is. Otherwise no action is needed.", table=table)
-    allowed = Message("sheets called {names}", names=names)
-    return warning("unread_sheet", place, value=place.rpartition(", sheet ")[2], allowed=allowed, action=action)
 
 
 def is_workbook(name: str) -> bool:

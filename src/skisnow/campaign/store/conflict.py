@@ -137,7 +137,7 @@ def open_conflicts(here: Connection, there: Connection, journal_id: str) -> Iter
     """Tests about which the entries that only one store has contradict those that only the other has."""
     of_here, of_there = entry_index(here, journal_id), entry_index(there, journal_id)
     for subject in of_here.written_on_both(of_there):
-        on_here, on_there = entries_about(here, journal_id, subject), entries_about(there, journal_id, subject)
+        on_here, on_there = (_entries_about(store, journal_id, subject) for store in (here, there))
         uids_here, uids_there = {entry.uid for entry in on_here}, {entry.uid for entry in on_there}
         conflict = Conflict(
             journal_id,
@@ -238,7 +238,7 @@ def entries_by_uid(connection: Connection, journal_id: str, uids: Iterable[str])
     return sorted(entries, key=lambda entry: entry.uid)
 
 
-def entries_about(connection: Connection, journal_id: str, subject: Subject) -> list[JournalEntry]:
+def _entries_about(connection: Connection, journal_id: str, subject: Subject) -> list[JournalEntry]:
     """Every entry about one test, in the order of their uids."""
     columns = journal_entry.c
     of_subject = (columns.journal_id == journal_id, columns.file == subject[0], columns.test == subject[1])

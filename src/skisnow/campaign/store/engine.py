@@ -62,7 +62,7 @@ def database_errors(store: StorePlace, code: str) -> Iterator[None]:
     try:
         yield
     except (DBAPIError, sqlite3.Error, UnicodeDecodeError) as error:
-        store = _place_of(error) or store
+        store = getattr(getattr(error, "orig", None) or error, "skisnow_place", store)
         if isinstance(error, UnicodeDecodeError):  # SQLite's message contains damaged text from the schema
             why: str = _DAMAGED
         elif isinstance(store, ServerAddress):
@@ -98,19 +98,6 @@ def file_errors(place: Path, code: str) -> Iterator[None]:
     except OSError as error:
         why = _SYSTEM_REASONS.get(error.errno or 0, error.strerror or str(error))
         raise StoreError(_FAILURES[code]).tag(code, place=error.filename or place, reason=why) from error
-
-
-def _remember_place(engine: Engine, place: StorePlace) -> None:
-    """Attach the store's place to errors of the engine, so that messages name the right one of two stores."""
-
-    def remember(context: ExceptionContext) -> None:
-        context.original_exception.skisnow_place = place  # type: ignore[attr-defined]
-
-    event.listen(engine, "handle_error", remember)
-
-
-def _place_of(error: BaseException) -> StorePlace | None:
-    return getattr(getattr(error, "orig", None) or error, "skisnow_place", None)
 
 
 @contextmanager
@@ -158,7 +145,11 @@ def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> En
             engine = open_server(place, create=create, busy_timeout_s=busy_timeout_s)
         else:
             engine = _open_file(place, create=create, busy_timeout_s=busy_timeout_s)
-    _remember_place(engine, place)
+
+    def remember_place(context: ExceptionContext) -> None:  # so that messages name the right one of two stores
+        context.original_exception.skisnow_place = place  # type: ignore[attr-defined]
+
+    event.listen(engine, "handle_error", remember_place)
     return engine
 
 
@@ -207,13 +198,13 @@ def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
         return connection
 
     engine = create_engine("sqlite://", creator=open_file, poolclass=NullPool)
-    event.listen(engine, "begin", _begin_transaction)
+
+    def begin(connection: Connection) -> None:
+        # The driver's own BEGIN comes late and never before DDL; with isolation_level None it stays out of the way.
+        connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
+
+    event.listen(engine, "begin", begin)
     return engine
-
-
-def _begin_transaction(connection: Connection) -> None:
-    # The driver's own BEGIN comes late and never before DDL; with isolation_level None it stays out of the way.
-    connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
 
 
 def _revision(connection: Connection, path: Path) -> str | None:

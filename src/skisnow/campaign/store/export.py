@@ -218,27 +218,19 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:
     """Corrections, test by test, in the order of the first correction of each test."""
-    for test in sorted(replay_journal(entries).tests.values(), key=_uid_of_first_manual_entry):
-        if test.rows and test.file != ATTACHMENTS:
-            yield from _corrections_of_test(test)
-
-
-def _uid_of_first_manual_entry(test: ReplayedTest) -> str:
-    return min((entry.uid for entry in test.history if not entry.is_from_file), default="")
-
-
-def _corrections_of_test(test: ReplayedTest) -> Iterator[AppliedCorrection]:
-    """Corrections of one test, in the order of the entries."""
-    cells_now = dict(test.rows[0].entered.cells)
-    first = min(cell_of(key)[0] for key in cells_now)
-    for entry in test.history:
-        if entry.sequence in test.undone or entry.action not in ("correct", "cancel"):
-            continue
-        cells = entry.cells if entry.action == "correct" else {f"{first}/{STATUS}": entry.why}
-        for key, new in cells.items():
-            line, column = cell_of(key)
-            yield correction_of_cell(entry, line, column, cells_now.get(key, ""), new)
-            cells_now[key] = new
+    tests = [test for test in replay_journal(entries).tests.values() if test.rows and test.file != ATTACHMENTS]
+    tests.sort(key=lambda test: min((entry.uid for entry in test.history if not entry.is_from_file), default=""))
+    for test in tests:
+        cells_now = dict(test.rows[0].entered.cells)
+        first = min(cell_of(key)[0] for key in cells_now)
+        for entry in test.history:
+            if entry.sequence in test.undone or entry.action not in ("correct", "cancel"):
+                continue
+            cells = entry.cells if entry.action == "correct" else {f"{first}/{STATUS}": entry.why}
+            for key, new in cells.items():
+                line, column = cell_of(key)
+                yield correction_of_cell(entry, line, column, cells_now.get(key, ""), new)
+                cells_now[key] = new
 
 
 FoundCampaign: TypeAlias = StoredCampaign | JournalHead

@@ -46,12 +46,8 @@ class StoredFile:
     sha256: str
 
 
-@dataclass(frozen=True, slots=True)
-class FileState:
-    """State of a file that must not change while it is read: size (bytes) and time of last change (ns)."""
-
-    size: int
-    changed_ns: int
+FileState: TypeAlias = tuple[int, int]
+"""State of a file that must not change while it is read: size (bytes) and time of last change (ns)."""
 
 
 def manifest_sha256(files: Iterable[StoredFile]) -> str:
@@ -83,11 +79,12 @@ def list_files(folder: Path) -> dict[str, FileState]:
         for entry in sorted(waiting.pop().iterdir()):
             path = entry.relative_to(folder).as_posix()
             state = entry.lstat()
-            if stat.S_ISDIR(state.st_mode) and not _is_junction(entry):
+            is_junction = getattr(entry, "is_junction", bool)()  # Windows's other link to a folder, Python ≥ 3.12
+            if stat.S_ISDIR(state.st_mode) and not is_junction:
                 waiting.append(entry)
             elif stat.S_ISREG(state.st_mode):
                 _require_safe(path, for_windows=False)
-                files[path] = FileState(state.st_size, state.st_mtime_ns)
+                files[path] = state.st_size, state.st_mtime_ns
             else:
                 refused.append(path)
     if refused:
@@ -96,11 +93,6 @@ def list_files(folder: Path) -> dict[str, FileState]:
             "or remove them."
         ).tag("not_a_file", folder=folder, paths=list(map(_printable, refused)))
     return files
-
-
-def _is_junction(entry: Path) -> bool:
-    """True for a junction, Windows's other link to a folder (Python 3.12 and later)."""
-    return bool(getattr(entry, "is_junction", bool)())
 
 
 def read_chunks(file: Path, chunk_bytes: int) -> Iterator[bytes]:

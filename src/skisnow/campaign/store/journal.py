@@ -149,7 +149,13 @@ class Journals:
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=now()))
             if entry.action != "add":  # an added photo or position is in no file
-                base = _entry_of_file(connection, id, entry, standing)
+                added = journal_entry.c.action == "add"
+                query = select(journal_entry.c.sequence).where(_is_about_test(id, entry), added)
+                base = connection.execute(query).scalars().first()
+                if base is None:
+                    file, test = entry.file, entry.test
+                    original = NewEntry(action="add", file=file, test=test, cells=standing, why="as the file has it")
+                    base = write_entry(connection, id, original, uid=uid_of_file(id, file, test)).sequence
                 entry = replace(entry, about=base) if entry.action == "correct" else entry
             _require_entry_of_test(connection, id, entry)
             return write_entry(connection, id, entry)
@@ -171,17 +177,6 @@ def _require_id(connection: Connection, ids: Select[Any], id_: str) -> None:
         raise StoreError("The store keeps no campaign with the id {id!r}; the list of campaigns names all.").tag(
             "unknown_id", id=id_
         )
-
-
-def _entry_of_file(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
-    """Sequence of the entry with the cells of a test in the file, which is written if it does not exist."""
-    query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.action == "add")
-    row = connection.execute(query).first()
-    if row is not None:
-        return int(row[0])
-    original = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
-    uid = uid_of_file(id_, entry.file, entry.test)
-    return write_entry(connection, id_, original, uid=uid).sequence
 
 
 def _is_about_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:

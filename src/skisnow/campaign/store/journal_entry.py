@@ -168,11 +168,10 @@ def write_entry(
 
 def insert_entries(connection: Connection, journal_id: str, entries: Sequence[JournalEntry]) -> None:
     """Write entries unchanged, with their checksums."""
-    if entries:
-        connection.execute(insert(journal_entry), [_row_of_entry(journal_id, entry) for entry in entries])
-
-
-def _row_of_entry(journal_id: str, entry: JournalEntry) -> dict[str, Any]:
-    row = {name: getattr(entry, name) for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
-    row |= {"journal_id": journal_id, "cells": json.dumps(dict(entry.cells), ensure_ascii=False)}
-    return {**row, "sha256": entry_sha256(row)}
+    rows: list[dict[str, Any]] = []
+    for entry in entries:
+        row = {name: getattr(entry, name) for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
+        row |= {"journal_id": journal_id, "cells": json.dumps(dict(entry.cells), ensure_ascii=False)}
+        rows.append({**row, "sha256": entry_sha256(row)})
+    if rows:
+        connection.execute(insert(journal_entry), rows)

@@ -11,7 +11,6 @@ from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from sqlalchemy import Engine
@@ -118,9 +117,7 @@ class Store(Shown):
         """The store itself."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Close the store at the end of the block."""
         self.close()
 
@@ -136,7 +133,7 @@ class Store(Shown):
         folder = Path(folder)
         with file_errors(folder, "not_read"):
             before = self._files_to_add(folder)
-            n_bytes = sum(state.size for state in before.values())
+            n_bytes = sum(size for size, _ in before.values())
             files = _hashed_files(folder, before, lambda done: progress(done, 2 * n_bytes))
             (n_errors, n_warnings), failure = _check(folder)
             sha256 = manifest_sha256(files)
@@ -253,13 +250,13 @@ def _hashed_files(
 ) -> tuple[StoredFile, ...]:
     """Hash each file; ``progress`` is called with the number of bytes."""
     files, done = [], 0
-    for path, state in states.items():
+    for path, (expected_size, _) in states.items():
         digest, size = hashlib.sha256(), 0
         for piece in read_chunks(folder / path, CHUNK_BYTES):
             digest.update(piece)
             size += len(piece)
             progress(done + size)
-        if size != state.size:
+        if size != expected_size:
             refuse_changed([path])
         files.append(StoredFile(path, size, digest.hexdigest()))
         done += size

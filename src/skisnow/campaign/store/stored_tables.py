@@ -157,11 +157,8 @@ def _checked_number_text(rule: Quantity, text: str, conversion: UnitConversion) 
     mark = "," if "," in text and "." not in text else "."
     value = number(text, mark)
     if math.isnan(value) or bool(rule.outside(conversion.convert(np.array([value])))[0]):
-        raise CellError("not_allowed" if text else "empty", rule.name, text, _number_fix(rule, conversion))
+        ends = (rule.lowest, rule.highest)
+        low, high = (conversion.revert(limit) if math.isfinite(limit) else limit for limit in ends)
+        fix = Message("Enter {allowed}.", allowed=allowed_words(replace(rule, lowest=low, highest=high)))
+        raise CellError("not_allowed" if text else "empty", rule.name, text, fix)
     return text.replace(",", ".")
-
-
-def _number_fix(rule: Quantity, conversion: UnitConversion) -> Message:
-    """Sentence with the allowed numbers, in the unit of the text."""
-    low, high = (conversion.revert(limit) if math.isfinite(limit) else limit for limit in (rule.lowest, rule.highest))
-    return Message("Enter {allowed}.", allowed=allowed_words(replace(rule, lowest=low, highest=high)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import Final
 
 from sqlalchemy import Connection, insert, select
@@ -22,7 +23,6 @@ from .journal import entered_name
 from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
 from .rows import (
     ID_DIGITS,
-    StoredCampaign,
     campaign_rows,
     copy_content,
     damage_error,
@@ -113,26 +113,37 @@ class _Sync:
             for _, row in sorted(missing.items()):
                 try:
                     stored = stored_campaign(from_, row)
+                    require_whole(stored)
                     with writing(to.engine) as connection:
-                        take_campaign(from_, connection, stored)
+                        for file in stored.files:
+                            if not copy_content(connection, file, stored_chunks(from_, file.sha256)):
+                                names = {"path": file.path, "id": stored.sha256[:ID_DIGITS]}
+                                raise damage_error(Message("{path} of the campaign {id}", **names))
+                        store_campaign(connection, stored)
                     n_taken += 1
                 except StoreError as error:
                     self._problems.append(f"{source.path}: {error}")
         return n_taken
 
     def _copy_journals(self, source: Store, to: Store, progress: Progress) -> int:
-        """Copy the missing entries of all shared journals; return their number."""
+        """Copy the missing entries of all shared journals, without those of conflicts; return their number."""
         n_taken = 0
         with reading(source.engine) as from_:
             with reading(to.engine) as connection:
                 ids = list(shared_journals(from_, connection))
             for number, id_ in enumerate(ids):
                 with self._collect_damage(id_):
+                    of_source = entry_index(from_, id_)
                     with reading(to.engine) as connection:  # no write lock if nothing is missing
-                        is_complete = not entry_index(from_, id_).missing_in(entry_index(connection, id_))
+                        is_complete = not of_source.missing_in(entry_index(connection, id_))
                     if not is_complete:
                         with writing(to.engine) as connection:
-                            n_taken += take_journal(from_, connection, id_)
+                            missing = of_source.missing_in(entry_index(connection, id_))
+                            open_ = {
+                                (conflict.file, conflict.test) for conflict in open_conflicts(from_, connection, id_)
+                            }
+                            wanted = [uid for uid in missing if of_source.subject[uid] not in open_]
+                            n_taken += len(take_entries(from_, connection, id_, wanted))
                 progress(number + 1, len(ids))
         return n_taken
 
@@ -189,29 +200,6 @@ def _name(connection: Connection, id_: str) -> str:
     """Name of a campaign that is stored or in entry; "" without one."""
     name = connection.execute(select(campaign.c.name).where(campaign.c.id == id_)).scalar()
     return name if isinstance(name, str) else entered_name(connection, id_)
-
-
-def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) -> None:
-    """Copy a campaign with the bytes of its files.
-
-    Raises StoreError: it is damaged in the source.
-    """
-    require_whole(stored)
-    for file in stored.files:
-        if not copy_content(to, file, stored_chunks(source, file.sha256)):
-            raise damage_error(Message("{path} of the campaign {id}", path=file.path, id=stored.sha256[:ID_DIGITS]))
-    store_campaign(to, stored)
-
-
-def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
-    """Copy the missing entries of a journal, without those of conflicts; return their number.
-
-    Raises StoreError: an entry is damaged.
-    """
-    of_source, held = entry_index(source, journal_id), entry_index(to, journal_id)
-    open_ = {(conflict.file, conflict.test) for conflict in open_conflicts(source, to, journal_id)}
-    wanted = [uid for uid in of_source.missing_in(held) if of_source.subject[uid] not in open_]
-    return len(take_entries(source, to, journal_id, wanted))
 
 
 def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iterable[str]) -> dict[str, int]:
@@ -275,7 +263,10 @@ def _rename(here: Connection, there: Connection, conflict: Conflict, who: str) -
     """Rename this store's test: its entries are undone and written again with the new name."""
     file, test = conflict.file, conflict.test
     key = FORMS[file].key if file in FORMS else ""
-    name = _free_name(here, there, conflict)
+    subjects = {
+        subject for store in (here, there) for subject in entry_index(store, conflict.campaign).subject.values()
+    }
+    name = next(free for number in count(2) if (file, free := f"{test} ({number})") not in subjects)
     why = f"stores synchronised; goes on as {name}"
     _undo_entries(here, conflict, [entry.sequence for entry in conflict.entries_here], why, who)
     numbers: dict[int, int] = {}
@@ -286,13 +277,3 @@ def _rename(here: Connection, there: Connection, conflict: Conflict, who: str) -
         new = NewEntry(**plain, test=name, cells=cells, about=about)
         written = write_entry(here, conflict.campaign, new, at=entry.at)
         numbers[entry.sequence] = written.sequence
-
-
-def _free_name(here: Connection, there: Connection, conflict: Conflict) -> str:
-    file, test = conflict.file, conflict.test
-    subjects = {*entry_index(here, conflict.campaign).subject.values()}
-    subjects |= {*entry_index(there, conflict.campaign).subject.values()}
-    number = 2
-    while (file, f"{test} ({number})") in subjects:
-        number += 1
-    return f"{test} ({number})"

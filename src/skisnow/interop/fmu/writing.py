@@ -16,7 +16,7 @@ from ..._support.errors import ParameterError
 from ..._support.staging import require_ending, write_file
 from ...contact import c_library
 from ...scenario import Scenario
-from .models import UNITS, Model, Variable, contact_model, sledge_model
+from .models import UNITS, Model, contact_model, sledge_model
 
 ENDING: Final = ".fmu"
 DATA: Final = "skisnow.txt"
@@ -110,7 +110,16 @@ _STATE: Final = {
 
 def description(model: Model, token: str, *, fmi: Version) -> bytes:
     """The file, as one of the two standards has it."""
-    root = ET.Element("fmiModelDescription", _head_attributes(model, token, fmi))
+    head = {
+        "fmiVersion": f"{fmi}.0",
+        "modelName": model.name,
+        "guid" if fmi == 2 else "instantiationToken": token,
+        "description": model.about,
+        "generationTool": f"skisnow {version('skisnow')}",
+        "license": "BSD-3-Clause",
+        "variableNamingConvention": "structured",
+    }
+    root = ET.Element("fmiModelDescription", head)
     capabilities = {
         "modelIdentifier": IDENTIFIER,
         "canHandleVariableCommunicationStepSize": "true",
@@ -127,64 +136,27 @@ def description(model: Model, token: str, *, fmi: Version) -> bytes:
     offered = [(number, variable) for number, variable in enumerate(model.variables) if variable.offered]
     variables = ET.SubElement(root, "ModelVariables")
     for number, exported in offered:
-        (_variable_2 if fmi == 2 else _variable_3)(variables, number, exported)
-    _add_structure(root, offered, fmi)
+        attributes = {
+            "name": exported.name,
+            "valueReference": str(number),
+            "description": exported.about,
+            "causality": exported.causality,
+            "variability": "fixed" if exported.causality == "parameter" else "continuous",
+        }
+        value = {"unit": exported.unit}
+        if exported.causality in ("parameter", "input"):
+            value["start"] = repr(exported.start)
+        if fmi == 2:
+            ET.SubElement(ET.SubElement(variables, "ScalarVariable", attributes), "Real", value)
+        else:
+            ET.SubElement(variables, "Float64", attributes | value)
+    structure = ET.SubElement(root, "ModelStructure")
+    for kind in ("Output", "InitialUnknown"):  # by position from 1 (FMI 2.0) or by value reference (FMI 3.0)
+        listing = ET.SubElement(structure, f"{kind}s") if fmi == 2 else structure
+        for place, (number, exported) in enumerate(offered, start=1):
+            if exported.causality == "output" and fmi == 2:
+                ET.SubElement(listing, "Unknown", index=str(place))
+            elif exported.causality == "output":
+                ET.SubElement(listing, kind, valueReference=str(number))
     ET.indent(root)
     return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="utf-8") + b"\n"
-
-
-def _head_attributes(model: Model, token: str, fmi: Version) -> dict[str, str]:
-    return {
-        "fmiVersion": f"{fmi}.0",
-        "modelName": model.name,
-        "guid" if fmi == 2 else "instantiationToken": token,
-        "description": model.about,
-        "generationTool": f"skisnow {version('skisnow')}",
-        "license": "BSD-3-Clause",
-        "variableNamingConvention": "structured",
-    }
-
-
-def _attributes(number: int, variable: Variable) -> dict[str, str]:
-    variability = "fixed" if variable.causality == "parameter" else "continuous"
-    return {
-        "name": variable.name,
-        "valueReference": str(number),
-        "description": variable.about,
-        "causality": variable.causality,
-        "variability": variability,
-    }
-
-
-def _unit_and_start(variable: Variable) -> dict[str, str]:
-    starts = variable.causality in ("parameter", "input")
-    return {"unit": variable.unit} | ({"start": repr(variable.start)} if starts else {})
-
-
-def _variable_2(variables: ET.Element, number: int, variable: Variable) -> None:
-    ET.SubElement(
-        ET.SubElement(variables, "ScalarVariable", _attributes(number, variable)), "Real", _unit_and_start(variable)
-    )
-
-
-def _variable_3(variables: ET.Element, number: int, variable: Variable) -> None:
-    ET.SubElement(variables, "Float64", _attributes(number, variable) | _unit_and_start(variable))
-
-
-def _add_structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Version) -> None:
-    """Add the list of the outputs, by position from 1 (FMI 2.0) or by value reference (FMI 3.0)."""
-    structure = ET.SubElement(root, "ModelStructure")
-    outputs = [
-        str(place if fmi == 2 else number)
-        for place, (number, element) in enumerate(offered, start=1)
-        if element.causality == "output"
-    ]
-    if fmi == 2:
-        lists = ET.SubElement(structure, "Outputs"), ET.SubElement(structure, "InitialUnknowns")
-        for element in lists:
-            for place in outputs:
-                ET.SubElement(element, "Unknown", index=place)
-        return
-    for kind in ("Output", "InitialUnknown"):
-        for number in outputs:
-            ET.SubElement(structure, kind, valueReference=number)

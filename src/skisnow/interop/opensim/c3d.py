@@ -64,7 +64,7 @@ def read_c3d(path: str | Path) -> Markers:
     labels, units = _labels_and_units(about)
     quantities = {name for group in _GROUPS for name in _texts_of(about, group)}
     names = labels[: points.shape[1]]
-    columns = [i for i, name in enumerate(names) if name and not _is_quantity(name, quantities)]
+    columns = [i for i, name in enumerate(names) if name and name not in quantities and not _QUANTITY.search(name)]
     if not columns:
         raise ParameterError("{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.").tag(
             "out_of_range", path=path
@@ -104,11 +104,6 @@ def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]
 
 def _texts_of(about: Mapping[str, Values], key: str) -> list[str]:
     return [word for word in about.get(key, ()) if isinstance(word, str)]
-
-
-def _is_quantity(name: str, quantities: set[str]) -> bool:
-    """True for angles, forces and other quantities, by the lists of the file or by the name."""
-    return name in quantities or _QUANTITY.search(name) is not None
 
 
 def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None = None) -> None:
