@@ -73,7 +73,7 @@ def study_seconds(folder: Path, text: str, executor: str | None) -> float:
     path = folder / "study.toml"
     path.write_text(text, encoding="utf-8")
     study = read_study(path)
-    warm, rows = Warm(), KeptRows(columns=study.columns[:-1])
+    warm, rows = Warm(), KeptRows()
     workers = 1 if executor is None else WORKERS
     compute_missing(study.points, StudyRows.of(study), rows, workers=workers, executor=executor, progress=warm)
     return warm.seconds_per_point(len(study.points))

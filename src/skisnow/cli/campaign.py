@@ -105,8 +105,7 @@ def analyse(options: argparse.Namespace) -> int:
     chosen: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     with Progress() as progress, paused_collector():
         campaign = read_campaign(options.campaign, progress=progress)
-        if options.out is not None:
-            prepare_output(options.out)
+        prepare_output(options.out)
         difference = options.difference / 100.0
         analysis = estimation.analyse(
             campaign, geometry=options.geometry, difference=difference, progress=progress, **chosen

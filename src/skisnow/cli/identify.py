@@ -105,8 +105,7 @@ def _prepare(options: argparse.Namespace) -> ScenarioFile:
         if options.posterior:
             require_emcee()
         scenario_input = scenario_of(options)
-    if options.out is not None:
-        prepare_output(options.out)
+    prepare_output(options.out)
     print_warnings(scenario_input.warnings)
     return scenario_input
 

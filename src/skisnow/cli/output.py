@@ -34,14 +34,14 @@ def print_warnings(warnings: Iterable[object]) -> None:
         print(f"warning: {warning}", file=sys.stderr)
 
 
-def prepare_output(folder: Path) -> None:
-    """Require a writable folder, and clean up after killed processes with a message.
+def prepare_output(folder: Path | None) -> None:
+    """Require a writable folder, and clean up after killed processes with a message; nothing without a folder.
 
     Raises OutputError: the folder cannot be made or written.
     """
     from .._support.staging import prepare_folder
 
-    for sentence in prepare_folder(folder):
+    for sentence in prepare_folder(folder) if folder is not None else ():
         print(sentence, file=sys.stderr)
 
 

@@ -77,8 +77,7 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
         from ..simulation.run_tables import ENDINGS
 
         require_ending(options.boots_out, *ENDINGS)
-    if options.out is not None:
-        prepare_output(options.out)
+    prepare_output(options.out)
     print_warnings(scenario_input.warnings)
 
 
@@ -257,8 +256,7 @@ def simulate_turn(options: argparse.Namespace) -> int:
         priors = [prior_of(word) for word in options.priors]
         scenario_input = scenario_of(options)
     print_warnings(scenario_input.warnings)
-    if options.out is not None:
-        prepare_output(options.out)
+    prepare_output(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
     numbers = _given(changes_of(options), scenario_input.scenario.contact)
     chosen = numbers | {name: getattr(options, name) for name in names if getattr(options, name) is not None}

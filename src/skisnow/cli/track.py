@@ -65,8 +65,7 @@ def summarise(options: argparse.Namespace) -> int:
     """Read a track, print its summary, and write its report if a folder is given."""
     if options.discipline is not None and options.course is None:
         options.parser.error("--discipline needs --course: name the file of the gates")
-    if options.out is not None:
-        prepare_output(options.out)
+    prepare_output(options.out)
     course = None if options.course is None else _read_course(options)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
@@ -185,8 +184,7 @@ def compare(options: argparse.Namespace) -> int:
             "--slope-angle-deg needs --fall-line-azimuth-deg, the direction in which the slope falls, or --fit-offset "
             "start,heading"
         )
-    if options.out is not None:
-        prepare_output(options.out)
+    prepare_output(options.out)
     comparison, verdict = _compare_tracks(options)
     from ..comparison import comparison_dict
     from ..track.course.gates_table import gap_rows, read_gate_gaps

@@ -122,7 +122,7 @@ def run_study(
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
         previous = study.place_for_previous() if state is StudyState.ANOTHER else None
-        study_table = write_rows(study.out, study.columns, finished_rows.values(), fingerprint, previous=previous)
+        study_table = write_rows(study.out, study.columns, finished_rows.rows(), fingerprint, previous=previous)
         finished_rows.remove()
     finally:
         finished_rows.close()
@@ -132,19 +132,21 @@ def run_study(
 def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptRows:
     """The finished points of a study, in a file."""
     kinds = json_text({name: key.kind for name, key in study.subject.keys.items()})
-    about = {"points": str(len(study.points)), "kinds": kinds, **about}
-    return KeptRows.opened(path, fingerprint, columns=study.columns[:-1], about=about)
+    columns = json_text(study.columns[:-1])
+    about = {"points": str(len(study.points)), "kinds": kinds, "columns": columns, **about}
+    return KeptRows.opened(path, fingerprint, about=about)
 
 
 def write_rows(
-    out: Path, columns: Sequence[str], values: Iterable[Sequence[Any]], fingerprint: str, *, previous: Path | None
+    out: Path, columns: Sequence[str], finished: Iterable[tuple[int, Any]], fingerprint: str, *, previous: Path | None
 ) -> StudyTable:
     """Write the table of all rows and return it; it is not written if no point could be computed.
 
-    columns, values: columns of the table, and the values of each row without the last one, the fingerprint.
+    columns: columns of the table, the last one for the fingerprint.
+    finished: number of each point, and the values of its row without the fingerprint.
     previous: where a table in its place goes; None: no table is there.
     """
-    rows = TableRows(columns, ((*row, fingerprint) for row in values))
+    rows = TableRows(columns, ((*values, fingerprint) for _, values in finished))
     tally = Tally.of(rows)
     if tally.failed < len(rows):
         if previous is not None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Self
+from typing import Any, Final, Self
 
 from .._support.errors import ParameterError
 from .._support.messages import template
@@ -138,8 +138,7 @@ def _merge_parts(out: Path, parts: Sequence[KeptRows]) -> StudyTable:
         for part, entries in zip(parts, about, strict=True):
             if entries.get(name) != about[0].get(name):
                 raise ParameterError(text).tag("another_study", path=part.path, other=parts[0].path)
-    columns = parts[0].columns
-    if "points" not in about[0] or columns is None:
+    if not {"points", "columns"} <= about[0].keys():
         raise ParameterError("{path} is not a part of a study. Name the files that --shard left").tag(
             "unknown_name", path=parts[0].path
         )
@@ -150,16 +149,16 @@ def _merge_parts(out: Path, parts: Sequence[KeptRows]) -> StudyTable:
     if state is StudyState.FINISHED and table is not None:
         return table
     previous = place_for_previous(out) if state is StudyState.ANOTHER else None
-    values = (own_json(text) for text in _merged_rows(parts))
-    return write_rows(out, (*columns, "study"), values, fingerprint, previous=previous)
+    columns = (*own_json(about[0]["columns"]), "study")
+    return write_rows(out, columns, _merged_rows(parts), fingerprint, previous=previous)
 
 
-def _merged_rows(parts: Sequence[KeptRows]) -> Iterator[str]:
-    """Rows of the points as they are kept, in rising order, each once."""
+def _merged_rows(parts: Sequence[KeptRows]) -> Iterator[tuple[int, Any]]:
+    """Points with the values of their rows, in rising order, each once."""
     last: NumberedText | None = None
     for text in heapq.merge(*(part.texts() for part in parts)):
         if last is None or text[0] != last[0]:
-            yield text[1]
+            yield text[0], own_json(text[1])
         elif text[1] != last[1]:
             raise ParameterError("two parts have different rows for point {each}. Compute one of them again").tag(
                 "contradiction", each=text[0] + 1

@@ -181,14 +181,14 @@ ALL_SITES: Final = ""
 class ChosenSnow:
     """A snow that was chosen by name.
 
-    analysis, site: analysis of the campaign, and the site ("" for all sites).
+    keys: inputs of a carved turn that name it; those of a scenario begin with "snow.".
+    analysis: analysis of the campaign, None for a published snow.
     """
 
     snow: SnowProperties
     words: str
-    published: str = ""
+    keys: Mapping[str, str]
     analysis: Analysis | None = None
-    site: str = ALL_SITES
 
 
 class SnowChoice:
@@ -282,11 +282,12 @@ class SnowChoice:
             return None
         if key.startswith(PUBLISHED):
             name = key.removeprefix(PUBLISHED)
-            return ChosenSnow(published_snow(name), name, published=name)
+            return ChosenSnow(published_snow(name), name, {"published": name})
         assert self._analysis is not None
         site, analysis = str(self._site.value or ALL_SITES), self._analysis[1]
         words = self._campaigns[key] + (f", {site}" if site else "")
-        return ChosenSnow(analysis.snow(site or None), words, analysis=analysis, site=site)
+        keys = {"results": RESULTS} | ({"site": site} if site else {})
+        return ChosenSnow(analysis.snow(site or None), words, keys, analysis)
 
     def _show_error(self, error: SkisnowError) -> None:
         self._refused = error_sentence(error)

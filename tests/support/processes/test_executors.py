@@ -162,7 +162,7 @@ def test_futures_that_a_lost_scheduler_cancels_are_reported() -> None:
 def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     executor = Here()
     monkeypatch.chdir(tmp_path)
-    crew = crews.ExecutorCrew(dict, executor, lambda: 1)
+    crew = crews.Crew(executor, crews.on_workers(dict), lambda: 1)
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     crew.submit([(0, POINTS[0])]).result()

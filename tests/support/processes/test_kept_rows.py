@@ -54,14 +54,6 @@ def test_rows_stay_in_a_file_of_their_own_and_go_with_it(place: Path) -> None:
     assert not list(place.parent.iterdir())
 
 
-def test_values_of_columns_are_kept_in_place_of_names(place: Path) -> None:
-    kept = KeptRows.opened(place, "f", columns=("n", "third", "absent"))
-    kept.add([(0, kept.form(json_text(ROWS[1])))])
-    assert kept.row(0) == {"n": 1, "third": 1 / 3.0, "absent": None}
-    kept.close()
-    assert KeptRows.read(place).columns == ("n", "third", "absent")
-
-
 def test_the_same_row_is_not_taken_twice(place: Path) -> None:
     kept = KeptRows.opened(place, "f")
     kept.add([(0, "{}")])

@@ -15,11 +15,12 @@ from .crews import (
     Crew,
     DaskCrew,
     Done,
-    ExecutorCrew,
     Numbered,
     PointFunction,
-    ProcessCrew,
+    compute_rows,
     crew_of_scheduler,
+    on_workers,
+    process_crew,
     require_scheduler,
 )
 from .kept_rows import KeptRows, NumberedText, Row, json_text
@@ -223,13 +224,13 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     workers: number of workers of this computer, or of an executor that does not report its number.
     """
     if isinstance(executor, Executor):
-        return ExecutorCrew(function, executor, lambda: _workers_of(executor) or workers)
+        return Crew(executor, on_workers(function), lambda: _workers_of(executor) or workers)
     if executor == "processes":
-        return ProcessCrew(function, workers)
+        return process_crew(function, workers)
     if executor == "threads":
         threads = ThreadPoolExecutor(workers)  # the compiled core lets other threads run while it computes
-        end = partial(threads.shutdown, wait=True, cancel_futures=True)
-        return ExecutorCrew(function, threads, lambda: workers, end, here=True)
+        compute = partial(compute_rows, function)
+        return Crew(threads, compute, lambda: workers, lambda _: threads.shutdown(wait=True, cancel_futures=True))
     if isinstance(executor, str):
         return crew_of_scheduler(executor, function)
     if hasattr(executor, "get_executor"):
@@ -242,9 +243,8 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
 
 def require_executor(executor: ExecutorLike | None) -> None:
     """Reject an unusable executor before the work begins."""
-    if executor is None or executor in LOCAL or not isinstance(executor, str):
-        return
-    require_scheduler(executor)
+    if isinstance(executor, str) and executor not in LOCAL:
+        require_scheduler(executor)
 
 
 def _workers_of(executor: Executor) -> int | None:

@@ -9,7 +9,6 @@ import platform
 import signal
 import threading
 import time
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
@@ -39,21 +38,39 @@ CHUNK_S: Final = 0.25
 LOST_WORKERS: Final = Message("The scheduler was lost, or gave the work up.")
 
 
-class Crew(ABC):
-    """Workers that compute chunks of points; each chunk gives a future with its rows."""
+class Crew:
+    """Workers of an executor that compute chunks of points; each chunk gives a future with its rows.
 
-    largest: int = LARGEST
-    """Points of one chunk."""
+    executor: it is not shut down here.
+    compute: function from the points of a chunk to its rows; see `on_workers`.
+    size: function that returns how many chunks the executor computes at once, which may change while the work runs.
+    close: function that stops the workers of this crew, at once if its argument is True; None: it started none.
+    largest: maximum number of points of a chunk.
+    """
+
     chunk_s: float = CHUNK_S
     """Work of one chunk (s)."""
 
-    @abstractmethod
-    def size(self) -> int:
-        """Number of chunks that are computed at once; it may change while the work runs."""
+    def __init__(
+        self,
+        executor: Executor,
+        compute: Callable[[list[Numbered]], Done],
+        size: Callable[[], int],
+        close: Callable[[bool], None] | None = None,
+        *,
+        largest: int = LARGEST,
+    ) -> None:
+        self._executor, self._compute, self._size, self._close = executor, compute, size, close
+        self.largest = largest
 
-    @abstractmethod
+    def size(self) -> int:
+        """Number of chunks that are computed at once."""
+        return max(1, self._size())
+
     def submit(self, points: list[Numbered]) -> Future[Done]:
-        """Hand out a chunk."""
+        """Hand out a chunk; a process that starts with it ignores Ctrl-C, which is for the parent alone."""
+        with interrupts_ignored():
+            return self._executor.submit(self._compute, points)
 
     def explain(self, error: Exception) -> Message | None:
         """Explanation of an error that the function did not raise; None: it is passed on."""
@@ -62,95 +79,37 @@ class Crew(ABC):
         is_lost = isinstance(error, CancelledError) or (isinstance(error, SkisnowError) and error.code == LOST)
         return LOST_WORKERS if is_lost else None
 
-    def require_alive(self) -> None:  # noqa: B027 - most have nothing to look after
+    def require_alive(self) -> None:
         """Raise an error if no worker can compute the chunks; called regularly during the wait."""
 
-    @abstractmethod
     def end(self, *, at_once: bool) -> None:
         """Stop the workers that this crew started; `at_once`: in the middle of their work, if possible."""
+        if self._close is not None:
+            self._close(at_once)
 
 
-class ProcessCrew(Crew):
+def process_crew(function: PointFunction, workers: int) -> Crew:
     """Processes of this computer.
 
     They are started afresh ("spawn"), on every system alike, with the first chunk, and stay: loading the libraries
-    takes long. They end with their parent, however that ends.
+    takes long. They end with their parent, however that ends: when the connection to them is closed.
     """
+    context = multiprocessing.get_context("spawn")
+    alive, leash = context.Pipe(duplex=False)
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_prepare_worker, initargs=(function, alive))
 
-    largest = LARGEST_FOR_A_PIPE
-
-    def __init__(self, function: PointFunction, workers: int) -> None:
-        self._function, self._workers = function, workers
-        self._executor: ProcessPoolExecutor | None = None
-        self._leash: Connection | None = None
-
-    def size(self) -> int:
-        """The number of processes."""
-        return self._workers
-
-    def submit(self, points: list[Numbered]) -> Future[Done]:
-        """Hand out a chunk; the first starts the processes."""
-        if self._executor is None:
-            context = multiprocessing.get_context("spawn")
-            alive, self._leash = context.Pipe(duplex=False)
-            self._executor = ProcessPoolExecutor(
-                self._workers, mp_context=context, initializer=_prepare_worker, initargs=(self._function, alive)
-            )
-        with interrupts_ignored():  # a worker that starts inherits this: Ctrl-C is for the parent alone
-            return self._executor.submit(_in_worker, points)
-
-    def end(self, *, at_once: bool) -> None:
-        """End the processes."""
+    def close(at_once: bool) -> None:
         if at_once:
-            self._disconnect()
-        if self._executor is not None:
-            self._executor.shutdown(wait=True, cancel_futures=True)
-        self._disconnect()
-        self._executor = None
+            leash.close()
+        executor.shutdown(wait=True, cancel_futures=True)
+        leash.close()
 
-    def _disconnect(self) -> None:
-        """Close the connection to the workers; each worker ends when it is closed."""
-        if self._leash is not None:
-            self._leash.close()
-        self._leash = None
+    return Crew(executor, _in_worker, lambda: workers, close, largest=LARGEST_FOR_A_PIPE)
 
 
-class ExecutorCrew(Crew):
-    """Executor of the caller, on this computer or others; each chunk carries the pickled function.
-
-    function: pickled once.
-    executor: it is not shut down here.
-    size: how many chunks it computes at once.
-    close: called at the end; None: there is nothing to close.
-    here: True for threads of this process, which call the function itself.
-    """
-
-    def __init__(
-        self,
-        function: PointFunction,
-        executor: Executor,
-        size: Callable[[], int],
-        close: Callable[[], None] | None = None,
-        *,
-        here: bool = False,
-    ) -> None:
-        self._executor, self._size, self._close = executor, size, close
-        self._compute: Callable[[list[Numbered]], Done] = partial(compute_rows, function)
-        if not here:
-            self._compute = partial(compute_on_worker, pickle.dumps(function), own_identity(), str(Path.cwd()))
-
-    def size(self) -> int:
-        """Number of workers that the executor reports."""
-        return max(1, self._size())
-
-    def submit(self, points: list[Numbered]) -> Future[Done]:
-        """Hand out a chunk."""
-        return self._executor.submit(self._compute, points)
-
-    def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - the executor's owner stops its work
-        """Call `close`, for example to end the connection to a scheduler; the executor is not shut down."""
-        if self._close is not None:
-            self._close()
+def on_workers(function: PointFunction) -> Callable[[list[Numbered]], Done]:
+    """Computation of a chunk that carries the function, pickled once, to workers on this computer or others."""
+    return partial(compute_on_worker, pickle.dumps(function), own_identity(), str(Path.cwd()))
 
 
 class _Worker:
@@ -311,13 +270,14 @@ def _no_answer_message(address: str, error: Exception) -> Message:
     )
 
 
-class DaskCrew(ExecutorCrew):
+class DaskCrew(Crew):
     """Workers of a Dask client. The scheduler repeats the chunk of a lost worker on another one."""
 
     chunk_s = 1.0  # from one piece to the next a worker takes some 10 ms, 50 where its cores are wanted by others
 
     def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None = None) -> None:
-        super().__init__(function, client.get_executor(pure=False), self._threads, close)
+        executor = client.get_executor(pure=False)
+        super().__init__(executor, on_workers(function), self._threads, close and (lambda _: close()))
         self._client = client
         self._counted, self._at, self._last_seen = 1, -COUNTED_EVERY_S, time.monotonic()
 

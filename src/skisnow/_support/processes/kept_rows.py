@@ -6,7 +6,7 @@ import json
 import sqlite3
 import weakref
 import zlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
@@ -17,6 +17,7 @@ from ..staging import cannot_write
 from ..user_files import own_json
 
 Row: TypeAlias = dict[str, Any]
+"""Values of a point by name; a study keeps a list of values, whose names are an entry of the batch."""
 NumberedText: TypeAlias = tuple[int, str]
 """A point's number and its row as JSON text on one line."""
 
@@ -39,27 +40,17 @@ class KeptRows:
     damaged file is an error that names it, whatever is damaged in it.
 
     path: the file, None: in memory.
-    columns: if columns are stated, a row is stored as the list of their values, which is half as long; other values are
-        not stored.
     """
 
-    def __init__(self, path: Path | None = None, *, columns: Sequence[str] | None = None) -> None:
+    def __init__(self, path: Path | None = None) -> None:
         self.path = path
-        self.columns = None if columns is None else tuple(columns)
         self._database = connect(path)
         weakref.finalize(self, self._database.close)
         if path is None:
             self._database.executescript(_TABLES)
 
     @classmethod
-    def opened(
-        cls,
-        path: Path,
-        fingerprint: str,
-        *,
-        columns: Sequence[str] | None = None,
-        about: Mapping[str, str] | None = None,
-    ) -> Self:
+    def opened(cls, path: Path, fingerprint: str, *, about: Mapping[str, str] | None = None) -> Self:
         """Open the file of a batch, or begin it; ParameterError if it has another fingerprint.
 
         fingerprint: changes with anything that the rows follow from.
@@ -69,12 +60,7 @@ class KeptRows:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise cannot_write(path, error) from error
-        entries = {"form": _FORM, "fingerprint": fingerprint, **(about or {})}
-        if columns is not None:
-            entries["columns"] = json.dumps(list(columns))
-        rows = cls._locked(path, entries)
-        rows.columns = None if columns is None else tuple(columns)
-        return rows
+        return cls._locked(path, {"form": _FORM, "fingerprint": fingerprint, **(about or {})})
 
     @classmethod
     def read(cls, path: Path) -> Self:
@@ -83,10 +69,7 @@ class KeptRows:
             raise ParameterError("{path} cannot be read: the file does not exist. Check the path.").tag(
                 "cannot_read", path=path
             )
-        rows = cls._locked(path)
-        columns = rows.about().get("columns")
-        rows.columns = None if columns is None else tuple(own_json(columns))
-        return rows
+        return cls._locked(path)
 
     @classmethod
     def _locked(cls, path: Path, about: Mapping[str, str] | None = None) -> Self:
@@ -147,10 +130,6 @@ class KeptRows:
                 )
         return len(new)
 
-    def form(self, text: str) -> str:
-        """Stored text of a row that is given as a JSON object."""
-        return text if self.columns is None else json_text([own_json(text).get(name) for name in self.columns])
-
     def __len__(self) -> int:
         """Number of finished rows."""
         ((count,),) = self._run_query("select count(*) from rows")
@@ -167,15 +146,12 @@ class KeptRows:
     def row(self, number: int) -> Row:
         """The row of a finished point."""
         ((_, text),) = self._select_checked_rows("where number = ?", number)
-        return self._parse_row(text)
+        row: Row = own_json(text)
+        return row
 
-    def rows(self) -> Iterator[tuple[int, Row]]:
+    def rows(self) -> Iterator[tuple[int, Any]]:
         """Points with their rows, in rising order."""
-        return ((number, self._parse_row(text)) for number, text in self.texts())
-
-    def values(self) -> Iterator[list[Any]]:
-        """The values of the columns of every finished point, in rising order."""
-        return (own_json(text) for _, text in self.texts())
+        return ((number, own_json(text)) for number, text in self.texts())
 
     def texts(self) -> Iterator[NumberedText]:
         """Points with their rows as they are kept, in rising order."""
@@ -192,10 +168,6 @@ class KeptRows:
             # `yield from` closes the cursor, which fails behind a closed database
             for record in self._database.execute(query, parameters):  # noqa: UP028
                 yield record
-
-    def _parse_row(self, text: str) -> Row:
-        row = own_json(text)
-        return row if self.columns is None else dict(zip(self.columns, row, strict=True))
 
     def close(self) -> None:
         """Close the file so that a later start can continue it."""

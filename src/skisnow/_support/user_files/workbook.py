@@ -217,55 +217,41 @@ def _require_sound(data: bytes) -> None:
         raise ContentError("The workbook has more than {limit} parts, which no table has.").tag(
             "too_large", limit=MOST_PARTS
         )
-    archive: zipfile.ZipFile = _call_openpyxl(lambda: zipfile.ZipFile(io.BytesIO(data)))
-    with archive:
-        _require_small(archive)
+    _call_openpyxl(partial(_require_small_parts, data))
 
 
-def _require_small(archive: zipfile.ZipFile) -> None:
+def _require_small_parts(data: bytes) -> None:
     unpacked = 0
-    for part in archive.infolist():
-        looked_at = _Part(part.filename) if part.filename.endswith((".xml", ".rels")) else None
-        pieces: Iterable[bytes] = iter(_read_pieces(archive, part))
-        while piece := _call_openpyxl(lambda pieces=pieces: next(pieces, b"")):  # type: ignore[misc]
-            unpacked += len(piece)
-            if unpacked > MOST_UNPACKED_BYTES:
-                most = MOST_UNPACKED_BYTES >> 20
-                raise ContentError(
-                    "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV."
-                ).tag("too_large", limit=most)
-            if looked_at is not None:
-                looked_at.take(piece)
-        if looked_at is not None:
-            looked_at.finish()
-
-
-def _read_pieces(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterable[bytes]:
-    with archive.open(part) as content:
-        while piece := content.read(_CHUNK):
-            yield piece
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        for part in archive.infolist():
+            checked = _Part(part.filename) if part.filename.endswith((".xml", ".rels")) else None
+            with archive.open(part) as content:
+                while piece := content.read(_CHUNK):
+                    unpacked += len(piece)
+                    if unpacked > MOST_UNPACKED_BYTES:
+                        raise ContentError(
+                            "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV."
+                        ).tag("too_large", limit=MOST_UNPACKED_BYTES >> 20)
+                    if checked is not None:
+                        checked.parser.Parse(piece, False)
+            if checked is not None:
+                checked.parser.Parse(b"", True)
 
 
 class _Part:
-    """Checker of the XML of one part of a workbook, fed in pieces; it stores nothing."""
+    """Checker of the XML of one part of a workbook: its parser is fed in pieces; it stores nothing."""
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._parser = expat.ParserCreate(namespace_separator=" ")
-        self._parser.StartDoctypeDeclHandler = self._refuse_document_type
-        self._parser.StartElementHandler = self._on_begin
-        self._parser.EndElementHandler = self._on_end
-        self._parser.CharacterDataHandler = self._on_text
+        self.parser = expat.ParserCreate(namespace_separator=" ")
+        self.parser.StartDoctypeDeclHandler = self._refuse_document_type
+        self.parser.StartElementHandler = self._on_begin
+        self.parser.EndElementHandler = self._on_end
+        self.parser.CharacterDataHandler = self._on_text
         self._elements = self._depth = 0
         self._cell = ""
         self._is_text = self._is_value = False
         self._in_cell: set[str] = set()
-
-    def take(self, piece: bytes) -> None:
-        _call_openpyxl(lambda: self._parser.Parse(piece, False))
-
-    def finish(self) -> None:
-        _call_openpyxl(lambda: self._parser.Parse(b"", True))
 
     def _refuse_document_type(self, *_: object) -> None:
         raise ContentError(

@@ -123,7 +123,7 @@ def with_sources(inputs: CarveInputs, sources: Sources) -> list[dict[str, Any]]:
     """Register a chosen snow and edited skis in the sources; returns questions that name each ski by a word."""
     snow = inputs.snow
     if snow is not None and snow.analysis is not None:
-        sources.take_snow(snow.snow, results=RESULTS, site=snow.site or None)
+        sources.take_snow(snow.snow, results=RESULTS, site=snow.keys.get("site"))
     questions = []
     for question in inputs.questions:
         if isinstance(keys := question["ski"], dict):
@@ -232,8 +232,7 @@ class CarvedTurn:
         if snow is not None:
             for key in OF_SNOW if self.snow.gives_stress else OF_SNOW[:1]:
                 del turn[key]
-            site = {"site": snow.site} if snow.site else {}
-            turn |= {"published": snow.published} if snow.published else {"results": RESULTS, **site}
+            turn |= snow.keys
         return CarveInputs([{"ski": ski, **turn} for ski in skis], snow)
 
     def ask(self) -> None:

@@ -12,6 +12,7 @@ from starlette.datastructures import FormData
 
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
+from ...estimation import Analysis
 from ...replay.run_file import RUN_FILE
 from ..elements import (
     Outcome,
@@ -32,7 +33,6 @@ from ..page_requests import add_upload, address, file_input, redrawn_by, submit_
 from ..replay_addresses import show_address
 from ..runs import Job, Runs
 from ..scenario_fields import (
-    ChosenSnow,
     ScenarioField,
     SnowChoice,
     field_label,
@@ -207,15 +207,17 @@ class _Form:
         if self._course.value != GIVEN:
             chosen.append(self._add_course(str(self._course.value), changes))
         files: dict[str, tuple[str, bytes]] = {}
+        words = ""
+        if snow is not None:
+            changes |= {f"snow.{key}": text for key, text in snow.keys.items()}
+            words = snow_words(snow.snow)
         if snow is not None and snow.analysis is not None:
-            results, words = await self._results(snow, scenario, changes)
+            results, words = await self._results(snow.analysis, scenario, changes)
             files = {"snow.results": (SNOW_FILE, results)}
-            chosen.append(Message("snow: {name}, {values}", name=snow.words, values=words))
         else:
-            if snow is not None:
-                changes["snow.published"] = snow.published
-                chosen.append(Message("snow: {name}, {values}", name=snow.words, values=snow_words(snow.snow)))
             await run.io_bound(require_scenario, scenario, changes)
+        if snow is not None:
+            chosen.append(Message("snow: {name}, {values}", name=snow.words, values=words))
         parts = [scenario.replace("-", " "), ski if ski != GIVEN else "", _ID.sub("", snow.words) if snow else ""]
         return self._runs.ask(
             scenario,
@@ -234,14 +236,11 @@ class _Form:
             changes.setdefault("skier.steers", "gates")
         return f"course: {course}"
 
-    async def _results(self, snow: ChosenSnow, scenario: str, changes: dict[str, str]) -> tuple[bytes, str]:
-        """Add the snow of a campaign to the changes; returns the file of its results, and the snow in words."""
-        if snow.site:
-            changes["snow.site"] = snow.site
+    async def _results(self, analysis: Analysis, scenario: str, changes: dict[str, str]) -> tuple[bytes, str]:
+        """File of a campaign's results, and its snow in words; a typed S_f is added to the changes if it has none."""
         if not self._snow.gives_stress:
             changes[OF_SNOW[1]] = self._fields[OF_SNOW[1]].text
-        assert snow.analysis is not None
-        results = await run.io_bound(results_and_snow_words, snow.analysis, scenario, changes)
+        results = await run.io_bound(results_and_snow_words, analysis, scenario, changes)
         if results is None:
             raise ParameterError("the lab is about to end").tag("lab_ends")
         return results

@@ -9,7 +9,6 @@ from nicegui import app, background_tasks, run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
 from ...estimation.results import results_json
-from ...parameters import InputValue
 from ...report.campaign.page import RESULTS
 from ..elements import (
     Outcome,
@@ -244,17 +243,17 @@ class _Form:
         ski_words = Message("ski: {ski}", ski=names[0]) if len(names) == 1 else Message("skis: {skis}", skis=names)
         return {key: words[0] if len(words) == 1 else words}, texts, [ski_words]
 
-    def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
+    def _chosen_snow(self) -> tuple[dict[str, Any], dict[str, bytes], list[str]]:
         """Fixed inputs by name, the file of an analysis by path, and the choice in words."""
         snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."
         if snow is None:
             return {}, {}, []
-        if snow.analysis is None:
-            return {f"{lead}published": snow.published}, {}, [Message("snow: {snow}", snow=snow.words)]
-        where: dict[str, InputValue] = {f"{lead}results": RESULTS}
-        if snow.site:
-            where[f"{lead}site"] = snow.site
-        return where, {RESULTS: results_json(snow.analysis.results)}, [Message("snow: {snow}", snow=snow.words)]
+        files = {} if snow.analysis is None else {RESULTS: results_json(snow.analysis.results)}
+        return (
+            {f"{lead}{key}": text for key, text in snow.keys.items()},
+            files,
+            [Message("snow: {snow}", snow=snow.words)],
+        )
 
 
 class _Card(JobCard):
