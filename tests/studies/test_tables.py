@@ -3,7 +3,6 @@
 import json
 import sqlite3
 import sys
-import tracemalloc
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -160,10 +159,8 @@ def small_table(study: Study) -> StudyTable:
 def test_a_million_rows_take_little_memory() -> None:
     """Rows of 40 numbers take 1.5 kB as a dict of floats, and here less than their digits in a file."""
     shares = np.random.default_rng(1).uniform(size=(20_000, 4))
-    tracemalloc.start()
     rows = TableRows([f"column {place}" for place in range(40)], ([*row, *range(36)] for row in shares.tolist()))
-    assert tracemalloc.get_traced_memory()[0] < 20_000 * 200
-    tracemalloc.stop()
+    assert sum(map(len, rows._blocks)) < 20_000 * 100
     assert list(rows[19_999].values()) == [*shares[-1], *range(36)]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from ..ski.beam import CLAMP_LENGTH
 from ..ski.ski_file import Sources
 from ..snow.properties import require_stress
 from .points import Point, Points
+from .table import FAILED
 
 CARVE_RESULTS: Final = (
     "outcome", "holds", "side_force_N", "side_force_limit_N", "total_force_N", "turn_radius_boot_m",
@@ -46,25 +47,43 @@ MOST_TRIED: Final = 100
 """Points that are tried, before anything is computed, for one that can be asked (assumption: milliseconds each)."""
 
 
+class _PointModel(ShownFields):
+    """Base of models: a point that cannot be computed gives a row with the outcome "error" and the reason."""
+
+    __slots__ = ()
+    keys: ClassVar[Mapping[str, Quantity]]
+    results: ClassVar[tuple[str, ...]]
+
+    def __call__(self, point: Point) -> Row:
+        """One row; whatever is wrong with a point is in it."""
+        try:
+            return self._compute_row(point)
+        except SkisnowError as error:
+            reason = str(error)
+        except Exception as error:  # a study never stops for one point
+            reason = f"unexpected {type(error).__name__}: {error}"
+        own = {**self._defaults(), **point, **dict.fromkeys(self.results)}
+        return {**own, "outcome": FAILED, "warnings": "", "reason": reason}
+
+    def _compute_row(self, point: Point) -> Row:
+        raise NotImplementedError
+
+    def _defaults(self) -> dict[str, Any]:
+        """Values of the inputs that a point does not have."""
+        return {name: key.default for name, key in self.keys.items()}
+
+
 @dataclass(slots=True, repr=False)
-class CarveModel(ShownFields):
+class CarveModel(_PointModel):
     """Computes the carve of each point of a study, one row each. Relative paths start at `folder`."""
 
+    keys = CARVE_KEYS
+    results = CARVE_RESULTS
     folder: Path
     _sources: Sources = field(init=False)
 
     def __post_init__(self) -> None:
         self._sources = Sources(self.folder)
-
-    @property
-    def keys(self) -> Mapping[str, Quantity]:
-        """The inputs by name."""
-        return CARVE_KEYS
-
-    @property
-    def results(self) -> tuple[str, ...]:
-        """The columns of results."""
-        return CARVE_RESULTS
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
         """The values of a table of the study by their names, which they have already."""
@@ -89,42 +108,33 @@ class CarveModel(ShownFields):
         skis = (self._sources.ski_file(word) for word in points.distinct("ski"))
         return [path for path in skis if path] + [self._sources.path(word) for word in points.distinct("results")]
 
-    def __call__(self, point: Point) -> Row:
-        """One row; whatever is wrong with a point is in it."""
-        try:
-            answer = answer_question(carve_question(point), sources=self._sources)
-            equilibrium = answer.equilibrium
-            scalars = scalars_dict(equilibrium)
-            depth, force = equilibrium.edge_depth, equilibrium.force_per_length
-            return {
-                **inputs_dict(answer),
-                **{name: scalars[name] for name in CARVE_RESULTS if name in scalars},
-                "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
-                "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
-                "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
-                "ski_name": answer.ski.name,
-                "warnings": "; ".join(answer.warnings),
-                "reason": equilibrium.remedy,
-            }
-        except SkisnowError as error:
-            return _failed_row(point, str(error))
-        except Exception as error:  # a study never stops for one point
-            return _failed_row(point, f"unexpected {type(error).__name__}: {error}")
-
-
-def _failed_row(point: Point, reason: str) -> Row:
-    values: dict[str, Any] = {name: key.default for name, key in CARVE_KEYS.items()} | point
-    return {**values, **dict.fromkeys(CARVE_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
+    def _compute_row(self, point: Point) -> Row:
+        answer = answer_question(carve_question(point), sources=self._sources)
+        equilibrium = answer.equilibrium
+        scalars = scalars_dict(equilibrium)
+        depth, force = equilibrium.edge_depth, equilibrium.force_per_length
+        return {
+            **inputs_dict(answer),
+            **{name: scalars[name] for name in CARVE_RESULTS if name in scalars},
+            "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
+            "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
+            "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
+            "ski_name": answer.ski.name,
+            "warnings": "; ".join(answer.warnings),
+            "reason": equilibrium.remedy,
+        }
 
 
 @dataclass(slots=True, repr=False)
-class ScenarioModel(ShownFields):
+class ScenarioModel(_PointModel):
     """Runs a scenario with the values of each point. Relative paths start at `folder`.
 
     folder: name of the study's file.
     scenario: a built-in name, or the path of a file.
     """
 
+    keys = SCENARIO_KEYS
+    results = RUN_RESULTS
     folder: Path
     scenario: str
     _base: ScenarioInput = field(init=False)
@@ -133,16 +143,6 @@ class ScenarioModel(ShownFields):
     def __post_init__(self) -> None:
         built_in = self.scenario in scenario_names()
         self._base = load_input(self.scenario if built_in else self.folder / self.scenario)
-
-    @property
-    def keys(self) -> Mapping[str, Quantity]:
-        """The scenario's keys by full name."""
-        return SCENARIO_KEYS
-
-    @property
-    def results(self) -> tuple[str, ...]:
-        """The columns of results."""
-        return RUN_RESULTS
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
         """Values of a table of the study under full names: sections, dotted names, and names without their section."""
@@ -176,17 +176,11 @@ class ScenarioModel(ShownFields):
         named = {word for name in PATH_KEYS for word in points.distinct(name)}
         return [*own, *(self.folder / word for word in sorted(named))]
 
-    def __call__(self, point: Point) -> Row:
-        """One row; whatever is wrong with a point is in it."""
+    def _compute_row(self, point: Point) -> Row:
         from ..simulation.simulated_run import simulate
 
-        try:
-            scenario_file = self._scenario_of_point(point)
-            run = simulate(scenario_file.scenario)
-        except SkisnowError as error:
-            return self._failed_row(point, str(error))
-        except Exception as error:  # a study never stops for one point
-            return self._failed_row(point, f"unexpected {type(error).__name__}: {error}")
+        scenario_file = self._scenario_of_point(point)
+        run = simulate(scenario_file.scenario)
         if run.outcome == "interrupted":  # half a run does not count: the study is what was interrupted
             raise KeyboardInterrupt
         return _run_row(scenario_file, run)
@@ -194,9 +188,9 @@ class ScenarioModel(ShownFields):
     def _scenario_of_point(self, point: Point) -> ScenarioFile:
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
-    def _failed_row(self, point: Point, reason: str) -> Row:
-        values = {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()} | point
-        return {**values, **dict.fromkeys(RUN_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
+    def _defaults(self) -> dict[str, Any]:
+        """Values of the scenario."""
+        return {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()}
 
 
 def _run_row(scenario: ScenarioFile, run: Run) -> Row:

@@ -136,58 +136,44 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
     tracks = TrackFolders(runs.folder)
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
-        def page() -> Response:
-            folders, titles = map(runs.folder_of, (run, ghost)), (runs.title(run), runs.title(ghost))
-            work = partial(page_of_folders, names=titles, back=LIST)
-            return HTMLResponse(confined(BOUNDS, work, *folders, language_of_request(request)))
-
-        return _or_error_page(request, page)
+        folders, titles = map(runs.folder_of, (run, ghost)), (runs.title(run), runs.title(ghost))
+        work = partial(page_of_folders, names=titles, back=LIST)
+        return HTMLResponse(confined(BOUNDS, work, *folders, language_of_request(request)))
 
     def turns(request: Request, track: str, other: str = "") -> Response:
-        def page() -> Response:
-            files = map(tracks.file, (track, other) if other else (track,))
-            named = [part for path, placing in files for part in (path, placing.called)]
-            work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
-            return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
+        files = map(tracks.file, (track, other) if other else (track,))
+        named = [part for path, placing in files for part in (path, placing.called)]
+        work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
+        return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
 
-        return _or_error_page(request, page)
-
-    def track_file(request: Request, track: str, file: str) -> Response:
-        def download() -> Response:
-            path, placing = tracks.file(track)
-            text = confined(BOUNDS, file_of_track, path, placing.called, file)
-            return _download(text, f"{track}-{file}", TRACK_FILES[file])
-
+    def track_file(request: Request, track: str, file: str) -> Response:  # noqa: ARG001 -- of an error page
         if file not in TRACK_FILES:
             return PlainTextResponse("", 404)
-        return _or_error_page(request, download)
+        path, placing = tracks.file(track)
+        text = confined(BOUNDS, file_of_track, path, placing.called, file)
+        return _download(text, f"{track}-{file}", TRACK_FILES[file])
 
-    _add_route(app, GATES, gates)
-    _add_route(app, TURNS, turns)
-    _add_route(app, f"{TURNS}/{{file}}", track_file)
+    _add_route(app, GATES, gates, is_page=True)
+    _add_route(app, TURNS, turns, is_page=True)
+    _add_route(app, f"{TURNS}/{{file}}", track_file, is_page=True)
 
 
-def _add_route(app: FastAPI, place: str, answer: Callable[..., Response]) -> None:
-    """Add the answer of an address; unknown runs and tracks are not found."""
+def _add_route(app: FastAPI, place: str, answer: Callable[..., Response], *, is_page: bool = False) -> None:
+    """Add the answer of an address; errors are shown as plain text, or on a page in the language of the request."""
 
     @wraps(answer)
     def answered(*arguments: Any, **options: Any) -> Response:
         try:
             return answer(*arguments, **options)
-        except ParameterError as error:
-            return PlainTextResponse(str(error), 404)
+        except (FieldDataError, ParameterError) as error:
+            if not is_page:
+                return PlainTextResponse(str(error), 404)
+            request = options["request"]
+            message = joined(error.sentences) if isinstance(error, FieldDataError) else error.message
+            sentence = message.text(language_of_request(request)) if isinstance(message, Message) else message
+            return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
 
     app.add_api_route(place, answered, include_in_schema=False, response_model=None)
-
-
-def _or_error_page(request: Request, answer: Callable[[], Response]) -> Response:
-    """Answer of a function, or a page with the sentence why it cannot be shown."""
-    try:
-        return answer()
-    except (FieldDataError, ParameterError) as error:
-        message = joined(error.sentences) if isinstance(error, FieldDataError) else error.message
-        sentence = message.text(language_of_request(request)) if isinstance(message, Message) else message
-        return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
 
 
 def _limit_exaggeration(exaggeration: float) -> float:
