@@ -11,8 +11,7 @@ from skisnow.skier.posture import LEFT_EDGE, RIGHT_EDGE, RIGHT_TOE, STANCE
 from skisnow.skier.wedge import regulator
 from skisnow.skier.yaw import Body
 
-RACE, RECREATIONAL = (0.21, 0.52), (0.16, 0.086)
-TO_TIP = 0.72
+RACE, RECREATIONAL, TO_TIP = (0.21, 0.52), (0.16, 0.086), 0.72
 
 
 def straight(slope: float, snow: tuple[float, float], duration: float, **changes: object) -> Scenario:
@@ -102,8 +101,9 @@ def across(side: float, duration: float, **changes: object) -> Scenario:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("snow", [RACE, (1.0, 0.52)])
-def test_a_side_slip_has_its_speed_and_then_stops(snow: tuple[float, float]) -> None:
+@pytest.mark.parametrize(("snow", "damping"), [(RACE, 150.0), (RACE, 200.0), (RACE, 250.0), ((1.0, 0.52), 200.0)])
+def test_a_side_slip_stops(snow: tuple[float, float], damping: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.skier.posture.HIP_DAMPING", damping)
     keys = ("snow.H_V_N_per_mm3", "skier.assumed_H_V_N_per_mm3")
     run = simulate(across(1.0, 5.5, **dict.fromkeys(keys, snow[0])))
     assert run.outcome == "finished"

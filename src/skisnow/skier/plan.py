@@ -34,6 +34,8 @@ its way aside: there the snow turns skis and body together, before the skis pivo
 snow stronger than assumed, ten pass two gates with 0.3 and with 0.45, five without)."""
 SETTLES: Final = 2.5
 """Rate (1/s) at which a side-slip comes to its speed, and its greatest deceleration (m/s²) (modelling assumption)."""
+CHANGES: Final = 0.5
+"""Time (s) over which a side-slip begins and stops, since the body leans ahead of the force (modelling assumption)."""
 STANDS: Final = 0.15
 """Speed (m/s) below which a side-slip that stops has stopped."""
 BACK: Final = 2.0
@@ -144,14 +146,18 @@ class SideSlip:
     stops_after: float
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
-        """An even force up the slope, more of it where it is to brake."""
-        side = math.copysign(1.0, seen.heading)
+        """Force up the slope that brings the slip to its speed or stops it, with the speed that it leaves."""
+        side, heading = math.copysign(1.0, seen.heading), math.copysign(0.5 * math.pi, seen.heading)
         down = side * seen.speed * math.sin(seen.heading - seen.course)
-        more = SETTLES * (down - self.speed) if seen.time < self.stops_after else min(SETTLES, 0.8 + 1.5 * down)
-        force = max(0.3, min(6.0, gravity.down * abs(math.sin(seen.heading)) + more))
-        heading = side * 0.5 * math.pi
-        stands = seen.time > self.stops_after and seen.speed < STANDS
-        return Planned(np.full(len(AHEAD), side * force), np.full(len(AHEAD), heading), heading, stands)
+        slope = gravity.down * abs(math.sin(seen.heading))
+        stops, force = seen.time >= self.stops_after, []
+        for time in seen.time + AHEAD:
+            more = min(SETTLES, 0.8 + 1.5 * down) * (down > 0.0) if stops else SETTLES * (down - self.speed)
+            share = min(1.0, (time - stops * self.stops_after) / CHANGES)
+            force.append(slope + share * (max(0.3, min(6.0, slope + more)) - slope))
+            down = max(0.0, down + STEP * (slope - force[-1]))
+        stands = stops and seen.speed < STANDS
+        return Planned(side * np.array(force), np.full(len(AHEAD), heading), heading, stands)
 
 
 class RecedingLine:

@@ -38,8 +38,7 @@ PITCHING_INERTIA: Final = 6.0
 """Inertia (kg m²) over the square of the sine of the lean, added in the hips: skis that turn under a leaning body pitch
 it and move the load along them, which takes as much from their own (measured: 0.8 of the body's pitch inertia)."""
 HIP_DAMPING: Final = 200.0
-"""Hips' damping over the fourth power of the sine of the lean (N m s) (found by trial: with 150 and 250 a side-slip
-from rest falls)."""
+"""Hips' damping over the fourth power of the sine of the lean (N m s) (found by trial)."""
 DAMPING: Final = 3e3
 """Of one leg that gives way to a load that it is not to bear (N s/m): snow under edged skis, some 2 · 10⁵ N/m, and the
 body swing with it at a third of the critical damping."""
