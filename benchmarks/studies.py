@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -21,7 +21,7 @@ from skisnow._support.processes.batch import compute_missing
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.parameters import Quantity
 from skisnow.studies import Study, read_study, run_study
-from skisnow.studies.points import Point, Points
+from skisnow.studies.points import Point
 from skisnow.studies.run import StudyRows, kept_rows
 from skisnow.studies.subjects import CARVE_RESULTS, CarveModel
 
@@ -54,10 +54,10 @@ class Costless:
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
         return self.carve.named(table)
 
-    def require_sound(self, points: Points, fixed: Point) -> None:
+    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         self.carve.require_sound(points, fixed)
 
-    def files(self, points: Points) -> list[Path]:
+    def files(self, points: Sequence[Point]) -> list[Path]:
         return self.carve.files(points)
 
     def __call__(self, point: Point) -> dict[str, Any]:

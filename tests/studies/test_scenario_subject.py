@@ -145,7 +145,7 @@ def test_scenario_of_a_file_and_files_of_points_count_in_the_fingerprint(tmp_pat
     )
     path = study_file(tmp_path, text.replace("drag_area_m2 = 0", 'drag_area_m2 = 0\nslope.kind = "profile"'))
     study = read_study(path)
-    assert study.subject.files(study.numbered) == [tmp_path / "mine.toml", tmp_path / "down.csv"]
+    assert study.subject.files(study.points) == [tmp_path / "mine.toml", tmp_path / "down.csv"]
     before = study.fingerprint()
     assert read_study(path).fingerprint() == before
     (tmp_path / "mine.toml").write_text(scenario_text("carved-46m").replace("80.0", "81.0"), encoding="utf-8")

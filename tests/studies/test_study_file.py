@@ -10,7 +10,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.studies import Study, read_study
-from skisnow.studies.points import GridPoints, ListedPoints, Points, SampledPoints
+from skisnow.studies.points import GridPoints, Points, SampledPoints, distinct_values
 from skisnow.studies.rows import TableRows
 from skisnow.studies.study import TOP_KEYS
 from tests.coded import Coded, coded, raises
@@ -67,7 +67,7 @@ def test_latin_hypercube_has_one_point_in_each_slice_and_follows_its_seed(tmp_pa
 def test_paths_are_relative_to_the_study(tmp_path: Path) -> None:
     fixed = FIXED.replace('ski = "slalom"\n', "")
     found = study(tmp_path, f'{OUT}{fixed}{GRID}ski = ["mine/ski.toml", "slalom"]\n')
-    assert found.subject.files(found.numbered) == [tmp_path / "mine" / "ski.toml"]
+    assert found.subject.files(found.points) == [tmp_path / "mine" / "ski.toml"]
 
 
 def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp_path: Path) -> None:
@@ -179,7 +179,8 @@ def test_a_study_has_the_fingerprint_of_the_list_of_its_points(text: str, kind: 
     found = study(tmp_path, text)
     assert isinstance(found.points, kind)
     listed = Study(found.file, found.out, found.subject, found.varied, list(found.points))
-    assert isinstance(listed.numbered, ListedPoints)
+    names = (*found.varied, "published", "nowhere")
+    assert all(distinct_values(listed.points, name) == distinct_values(found.points, name) for name in names)
     assert listed.fingerprint() == found.fingerprint()
     fewer = Study(found.file, found.out, found.subject, found.varied, list(found.points[:-1]))
     assert fewer.fingerprint() != found.fingerprint()

@@ -64,23 +64,11 @@ class Points(LazySequence):
         """Distinct values of an input, in the order of the points; empty where no point has it."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ListedPoints(Points):
-    """Points of a study as a list."""
-
-    points: Sequence[Point]
-
-    def __len__(self) -> int:
-        """Their number."""
-        return len(self.points)
-
-    def point(self, number: int) -> Point:
-        """The entry of the list."""
-        return self.points[number]
-
-    def distinct(self, name: str) -> list[Any]:
-        """Distinct values of an input."""
-        return list(dict.fromkeys(point[name] for point in self.points if name in point))
+def distinct_values(points: Sequence[Point], name: str) -> list[Any]:
+    """Distinct values of an input, as `Points.distinct`; the points may be a list, too."""
+    if isinstance(points, Points):
+        return points.distinct(name)
+    return list(dict.fromkeys(point[name] for point in points if name in point))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -127,14 +115,14 @@ class Column:
     numbers: npt.NDArray[Any]
     listed: tuple[Any, ...] = ()
 
+    def values(self) -> list[Any]:
+        """The values of all points."""
+        return [self.listed[place] for place in self.numbers] if self.listed else self.numbers.tolist()
+
     def __getitem__(self, number: int) -> Any:
         """The value of a point."""
-        return self.values(number, number + 1)[0]
-
-    def values(self, first: int, last: int) -> list[Any]:
-        """The values of the points from `first` to before `last`."""
-        numbers = self.numbers[first:last].tolist()
-        return [self.listed[place] for place in numbers] if self.listed else numbers
+        value = self.numbers[number].item()
+        return self.listed[value] if self.listed else value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,7 +149,7 @@ class SampledPoints(Points):
     def distinct(self, name: str) -> list[Any]:
         """The values of a column, or the one that is fixed."""
         column = self.columns.get(name)
-        return _fixed_value(self.fixed, name) if column is None else list(dict.fromkeys(column.values(0, self.n)))
+        return _fixed_value(self.fixed, name) if column is None else list(dict.fromkeys(column.values()))
 
 
 def _fixed_value(fixed: Mapping[str, Any], name: str) -> list[Any]:

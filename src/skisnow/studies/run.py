@@ -183,7 +183,7 @@ class StudyRows:
     @classmethod
     def of(cls, study: Study) -> Self:
         """Rows of a study with the present contents of its files."""
-        files = [path.absolute() for path in study.subject.files(study.numbered)]
+        files = [path.absolute() for path in study.subject.files(study.points)]
         return cls(study.subject, study.columns[:-1], tuple((path, _file_hash(path)) for path in files))
 
     def __call__(self, point: Point) -> list[Any]:

@@ -14,7 +14,7 @@ from .._support.processes.kept_rows import Row
 from .._support.units import Facts, Shown
 from .._support.user_files import is_file, read_toml
 from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
-from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points
+from .points import Axis, Point, Points, grid_points, hypercube_points
 from .subjects import CarveModel, ScenarioModel
 from .table import WRITERS
 
@@ -41,11 +41,11 @@ class StudyModel(Protocol):
         """The values of a table of the study under the names of `keys`; an unknown name may stay."""
         ...
 
-    def require_sound(self, points: Points, fixed: Point) -> None:
+    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         """Raise an error if the study cannot run: an input is missing, given twice, or names an unreadable file."""
         ...
 
-    def files(self, points: Points) -> list[Path]:
+    def files(self, points: Sequence[Point]) -> list[Path]:
         """Files that the points name: when one of them changes, the study is another."""
         ...
 
@@ -92,11 +92,6 @@ class Study(Shown):
         return Facts(f"of {len(self.points)} points, {self.file}", rows)
 
     @property
-    def numbered(self) -> Points:
-        """The points as `Points`, which compute each from its number."""
-        return self.points if isinstance(self.points, Points) else ListedPoints(self.points)
-
-    @property
     def columns(self) -> tuple[str, ...]:
         """Columns of the table."""
         return (*self.subject.keys, *self.subject.results, "study")
@@ -115,7 +110,7 @@ class Study(Shown):
         digest = hashlib.sha256(repr((version("skisnow"), self.columns)).encode())
         for point in self.points:
             digest.update(repr(point).encode())
-        for path in self.subject.files(self.numbered):
+        for path in self.subject.files(self.points):
             digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Final
@@ -25,7 +25,7 @@ from ..simulation.run_summary import end_dict, energies_dict, least_turn_radius,
 from ..ski.beam import CLAMP_LENGTH
 from ..ski.ski_file import Sources
 from ..snow.properties import require_stress
-from .points import Point, Points
+from .points import Point, distinct_values
 from .table import FAILED
 
 CARVE_RESULTS: Final = (
@@ -89,9 +89,9 @@ class CarveModel(_PointModel):
         """The values of a table of the study by their names, which they have already."""
         return dict(table)
 
-    def require_sound(self, points: Points, fixed: Point) -> None:
+    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         """Raise an error if an input is missing, the snow is named twice, or a fixed ski or snow cannot be read."""
-        carves = points.distinct("at_rest") != [True]
+        carves = distinct_values(points, "at_rest") != [True]
         point = next(point for point in points if not (carves and point.get("at_rest") is True))
         require_complete(point)
         # the snow that all points share must be there, with S_f from one side and not from both
@@ -103,10 +103,12 @@ class CarveModel(_PointModel):
             if "clamp_length_m" in fixed or "clamp_length_m" not in points[0]:
                 require_clamp(ski, fixed.get("clamp_length_m", CLAMP_LENGTH))
 
-    def files(self, points: Points) -> list[Path]:
+    def files(self, points: Sequence[Point]) -> list[Path]:
         """Ski files and results files."""
-        skis = (self._sources.ski_file(word) for word in points.distinct("ski"))
-        return [path for path in skis if path] + [self._sources.path(word) for word in points.distinct("results")]
+        skis = (self._sources.ski_file(word) for word in distinct_values(points, "ski"))
+        return [path for path in skis if path] + [
+            self._sources.path(word) for word in distinct_values(points, "results")
+        ]
 
     def _compute_row(self, point: Point) -> Row:
         answer = answer_question(carve_question(point), sources=self._sources)
@@ -157,7 +159,7 @@ class ScenarioModel(_PointModel):
                 values[full] = part_value
         return values
 
-    def require_sound(self, points: Points, fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
+    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
         """Refuse a study of which none of the first points can be computed, with the problem of the first."""
         first: SkisnowError | None = None
         for point in points[:MOST_TRIED]:
@@ -170,10 +172,10 @@ class ScenarioModel(_PointModel):
         if first is not None:
             raise first
 
-    def files(self, points: Points) -> list[Path]:
+    def files(self, points: Sequence[Point]) -> list[Path]:
         """The scenario's file, and every file that it or a point names."""
         own = input_files(self._base) if self._base.file else (scenario_place(self.scenario), *input_files(self._base))
-        named = {word for name in PATH_KEYS for word in points.distinct(name)}
+        named = {word for name in PATH_KEYS for word in distinct_values(points, name)}
         return [*own, *(self.folder / word for word in sorted(named))]
 
     def _compute_row(self, point: Point) -> Row:
