@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO, Any, Final, NamedTuple
@@ -67,16 +67,13 @@ class LabSkis:
         table = place.with_name(TABLE)
         return place.read_text(encoding="utf-8"), table.read_text(encoding="utf-8") if table.is_file() else ""
 
-    def save_ski(self, name: str, ski: Ski) -> None:
-        """Save a ski with this name as a file with a table.
+    def save_texts(self, name: str, text: str, table: str) -> None:
+        """Save the text of a ski's file and table under a new name.
 
-        Raises ParameterError: the name is not valid or exists already.
+        Raises ParameterError: the name is not valid or exists already, or the texts are not those of a ski.
         Raises OutputError: the folder cannot be written.
         """
-        self._save_ski(name, lambda folder: write_ski(ski, folder / FILE))
-
-    def save_texts(self, name: str, text: str, table: str) -> None:
-        """Save the text of a ski's file and table under a new name; see `save_ski`."""
+        self.require_new(name)
         line = f"name = {toml_text(name)}"
         named = _NAME_LINE.sub(lambda _: line, text, count=1) if _NAME_LINE.search(text) else f"{line}\n{text}"
         ski, _ = ski_of_texts(named, table)
@@ -84,13 +81,17 @@ class LabSkis:
             raise ParameterError("write the name into the file yourself, on a separate line: {line}").tag(
                 "no_place_for_name", line=line
             )
-
-        def write(folder: Path) -> None:
-            write_file(folder / FILE, named)
-            if table:
-                write_file(folder / TABLE, table)
-
-        self._save_ski(name, write)
+        with hidden_folder(self._folder) as made:
+            try:
+                write_file(made / FILE, named)
+                if table:
+                    write_file(made / TABLE, table)
+                made.chmod(0o755)
+                made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
+            except OSError as error:
+                raise OutputError("the ski {name} cannot be saved: {error}. Try another name").tag(
+                    "cannot_write", name=name, error=error.strerror or error
+                ) from error
 
     def require_new(self, name: str) -> None:
         """Reject a name that exists or is not a valid name of a folder on every system."""
@@ -106,18 +107,6 @@ class LabSkis:
             raise ParameterError(
                 "there is a ski {name} already, and none is overwritten; give this one another name"
             ).tag("already_there", name=name)
-
-    def _save_ski(self, name: str, write: Callable[[Path], object]) -> None:
-        self.require_new(name)
-        with hidden_folder(self._folder) as made:
-            try:
-                write(made)
-                made.chmod(0o755)
-                made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
-            except OSError as error:
-                raise OutputError("the ski {name} cannot be saved: {error}. Try another name").tag(
-                    "cannot_write", name=name, error=error.strerror or error
-                ) from error
 
 
 def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:

@@ -11,7 +11,7 @@ import skisnow
 from skisnow.report.formatting import significant
 from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
-from skisnow.web.lab_skis import LabSkis
+from skisnow.web.lab_skis import LabSkis, texts_of_ski
 
 from .desk import Desk, Sheet
 from .test_carve import ANGLE, LOAD, move, slider, told
@@ -148,7 +148,7 @@ def test_the_ski_is_saved_in_the_lab(desk: Desk) -> None:
 
 def test_only_skis_of_widths_and_a_list_of_stiffness_are_designed(desk: Desk) -> None:
     skis = LabSkis(desk.lab.runs)
-    skis.save_ski("of a table", skisnow.read_ski("carver"))
+    skis.save_texts("of a table", *texts_of_ski(skisnow.read_ski("carver")))
     skis.save_texts("broken", skis.texts("slalom")[0], "")
     (desk.lab.runs / "skis" / "broken" / "ski.toml").write_text("length_mm = 'a'", encoding="utf-8")
     page = desk.open("/design")

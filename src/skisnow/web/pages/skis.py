@@ -184,28 +184,24 @@ class _SkisPage:
 
     def _save_edited(self, name: str, edit: SkiEditInput) -> None:
         self._skis.require_new(name)
-        edited = edit_ski_texts(edit, name=name)
-        if edit.is_file:
-            self._skis.save_texts(name, edit.text, edit.table)
-        else:
-            self._skis.save_ski(name, edited.ski)
+        self._skis.save_texts(name, *_edited_texts(edit, name))
 
     async def _download(self) -> None:
         try:
             self._editor.require_drawn()
-            files = await run.io_bound(_files, self._editor.edit())
+            texts = await run.io_bound(_edited_texts, self._editor.edit())
         except SkisnowError as error:
             self._saved.say(error_sentence(error), bad=True)
             return
-        for name, text in (files or {}).items():
-            ui.download(text.encode(), name)
+        for file, text in zip((FILE, TABLE), texts or (), strict=False):
+            if text:
+                ui.download(text.encode(), file)
 
 
-def _files(edit: SkiEditInput) -> dict[str, str]:
-    """Texts of the edited ski's file and table by file name."""
-    edited = edit_ski_texts(edit)
-    text, table = (edit.text, edit.table) if edit.is_file else texts_of_ski(edited.ski)
-    return {FILE: text, **({TABLE: table} if table else {})}
+def _edited_texts(edit: SkiEditInput, name: str = "") -> tuple[str, str]:
+    """Texts of the edited ski's file and table ("" without one)."""
+    edited = edit_ski_texts(edit, name=name)
+    return (edit.text, edit.table) if edit.is_file else texts_of_ski(edited.ski)
 
 
 def _chart_lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:

@@ -206,7 +206,7 @@ def test_uploads_are_named_without_their_folders(confined_words: list[tuple[obje
 @pytest.mark.parametrize("name", ["a", "Ä", "9", "a b-c_d", "x" * 40, "con1", "com", "nothing else", "kž"])
 def test_names_that_a_ski_may_have(tmp_path: Path, name: str) -> None:
     skis = LabSkis(tmp_path)
-    skis.save_ski(name, replace(CARVER, name=name))
+    skis.save_texts(name, *texts_of_ski(replace(CARVER, name=name)))
     assert skis.saved() == [name]
 
 
@@ -218,7 +218,7 @@ def test_names_that_a_ski_may_not_have(tmp_path: Path, name: str) -> None:
 
 def test_a_ski_that_was_saved_may_be_read_by_others_of_the_machine(tmp_path: Path) -> None:
     skis = LabSkis(tmp_path / "deep" / "runs")
-    skis.save_ski("mine", replace(CARVER, name="mine"))
+    skis.save_texts("mine", *texts_of_ski(replace(CARVER, name="mine")))
     folder = tmp_path / "deep" / "runs" / "skis"
     assert (folder / "mine").stat().st_mode & 0o777 == 0o755
     assert sorted(each.name for each in (folder / "mine").iterdir()) == ["ski.csv", "ski.toml"]

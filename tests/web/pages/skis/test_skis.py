@@ -11,7 +11,7 @@ from nicegui import ui
 
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
-from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
+from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts, texts_of_ski
 from skisnow.web.page_requests import address
 from skisnow.web.uploads import SKI_BOUNDS
 
@@ -311,7 +311,7 @@ def test_a_text_is_drawn_when_it_is_requested(desk: Desk, confined_words: list[t
 
 def test_a_table_that_was_changed_is_drawn_too(desk: Desk) -> None:
     skis = LabSkis(desk.lab.runs)
-    skis.save_ski("mine", replace(CARVER, name="mine"))
+    skis.save_texts("mine", *texts_of_ski(replace(CARVER, name="mine")))
     page = opened(desk, "/skis?ski=mine", "mine")
     _, table = skis.texts("mine")
     assert page.field(TABLE_FIELD).value == table
