@@ -110,7 +110,7 @@ def derived() -> list[Derived]:
     printed = ((0.21, 0.01, 0.52, 0.01), (0.16, 0.01, 0.086, 0.001), (0.022, 0.001, 0.094, 0.001))
     rows = []
     for name, snow, (hardness, digit, stress, stress_digit) in zip(
-        names, federolf_2006.snows().values(), printed, strict=True
+        names, federolf_2006.named_snows().values(), printed, strict=True
     ):
         assert snow.snow_hardness is not None
         assert snow.failure_shear_stress is not None

@@ -20,7 +20,7 @@ from ..ski.ski_file import Sources
 from ..snow import SnowProperties
 from ..snow.from_results import snow_dict
 from ..snow.measured_range import with_range_warnings
-from ..snow.properties import require_stress, with_stress
+from ..snow.properties import require_stress
 from .equilibrium import carve, rest
 from .outputs import OUTPUTS
 from .question import CARVE_KEYS, CarveQuestion, implausible_values, require_clamp
@@ -68,8 +68,7 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
             source=Message("given as numbers"),
         )
     snow = sources.named_snow(question.as_dict())
-    require_stress(snow, question.S_f_N_per_mm2, carves=not question.at_rest)
-    return with_stress(snow, question.S_f_N_per_mm2)
+    return require_stress(snow, question.S_f_N_per_mm2, carves=not question.at_rest)
 
 
 def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties) -> Equilibrium:

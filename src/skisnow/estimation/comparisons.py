@@ -137,11 +137,10 @@ def compare_with_published(
         Comparison(paper_range, H_V, moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3, hardness),
         Comparison(paper_range, S_f, moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2, stress),
     ]
-    for name, snow in federolf_2006.snows().items():
-        source = Message("{source}: {snow}", source=federolf_2006.SOURCE, snow=name)
-        rows.append(Comparison(source, H_V, snow.snow_hardness / N_PER_MM3, hardness))
+    for snow in federolf_2006.named_snows().values():
+        rows.append(Comparison(snow.source, H_V, snow.snow_hardness / N_PER_MM3, hardness))
         if snow.failure_shear_stress is not None:
-            rows.append(Comparison(source, S_f, snow.failure_shear_stress / N_PER_MM2, stress))
+            rows.append(Comparison(snow.source, S_f, snow.failure_shear_stress / N_PER_MM2, stress))
     rows += [
         Comparison(Message("{source}, Eqn 11", source=paper), quantity, value, own)
         for quantity, value, own in zip(("b0", "b1_per_rad"), moessner_2013.ANGLE_TERM, angle_term, strict=True)

@@ -91,7 +91,12 @@ def fit_models_with_depth_errors(fitted: FittedHardness, uncertainty: ReadingUnc
     scatter = float(np.sqrt(np.mean(scatters**2))) if scatters.size else 0.0
     fits: list[ModelFit] = []
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}
-    slopes_of = {symbol: _depth_slopes(readings, H) for symbol, H in hardnesses.items()}
+    # derivatives with depth of the four regressors: dA/de replaces A, and A, which is dV/de, replaces V
+    # a line contact (cylinder at e = 0) has an infinite dA/de: no depth, no information
+    growth = np.where(np.isfinite(readings.area_growth), readings.area_growth, 0.0)
+    slopes_of = {
+        symbol: weighted_columns(readings, H, growth, readings.contact_area) for symbol, H in hardnesses.items()
+    }
     for model in MODELS:
         basis = bases[model.hardness]
         slopes = slopes_of[model.hardness]
@@ -121,13 +126,6 @@ def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: Floa
     gram, moment = products[:, :4], products[:, 4] - products[:, :4] @ fixed
     fitted = non_negative_fits((projection.T @ gram @ projection)[None], (moment @ projection)[None])[0]
     return fixed + projection @ fitted
-
-
-def _depth_slopes(readings: Readings, hardness: FloatArray) -> FloatArray:
-    """Derivatives with depth of the four regressors (n, 4): dA/de replaces A, and A, which is dV/de, replaces V."""
-    # a line contact (cylinder at e = 0) has an infinite dA/de: no depth, no information
-    growth = np.where(np.isfinite(readings.area_growth), readings.area_growth, 0.0)
-    return weighted_columns(readings, hardness, growth, readings.contact_area)
 
 
 def _effective_weights(

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Final, NamedTuple
 
@@ -118,19 +118,16 @@ def compare_groups(data: Measured, by: str, difference: float = DIFFERENCE) -> t
     sites = [data.labels["site"][index] for index in labelled.tolist()] if by != "site" else None
     fit = _EffectsFit(data.logs[labelled], data.error2[labelled], groups, sites)
     needed = None if not fit.scatter > 0 else tests_per_group(fit.scatter, ratio=1.0 + difference, power=POWER)
-    pairs = []
-    for a, b in combinations(np.argsort(fit.names).tolist(), 2):
-        if fit.is_estimable(a, b):
-            ratio, interval, p = fit.ratio(a, b)
-            pairs.append(
-                GroupComparison(
-                    data.quantity, by, fit.names[a], fit.names[b], int(fit.n[a]), int(fit.n[b]),
-                    ratio, interval, p, needed,
-                )
-            )  # fmt: skip
-    corrected = holm_corrected(np.array([pair.p for pair in pairs]))
+    pairs = [(a, b) for a, b in combinations(np.argsort(fit.names).tolist(), 2) if fit.is_estimable(a, b)]
+    ratios = [fit.ratio(a, b) for a, b in pairs]
+    corrected = holm_corrected(np.array([p for _, _, p in ratios]))
     n_pairs = int(np.isfinite(corrected).sum())
-    return tuple(replace(pair, p_holm=p, n_pairs=n_pairs) for pair, p in zip(pairs, corrected.tolist(), strict=True))
+    return tuple(
+        GroupComparison(
+            data.quantity, by, fit.names[a], fit.names[b], int(fit.n[a]), int(fit.n[b]), *ratio, needed, p, n_pairs
+        )
+        for (a, b), ratio, p in zip(pairs, ratios, corrected.tolist(), strict=True)
+    )
 
 
 def compare_campaign(

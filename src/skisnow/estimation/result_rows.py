@@ -24,7 +24,7 @@ from .hardness import (
     shear_stress,
 )
 from .model_choice import NestedRows
-from .models import MODELS, Model, ModelFit
+from .models import MODELS, ModelFit
 from .parts import ModelTable, PenetrationAnalysis
 from .readings import readings_of
 from .screening import Screened, SeriesEstimates, screened_both
@@ -204,19 +204,10 @@ def shear_experiments(
 def model_rows(table: ModelTable | None) -> list[Json]:
     """The rows ``penetration.models``: the nine candidate models, without numbers if the campaign has no data."""
     if table is None:
-        nothing = dict.fromkeys(("a0", "a1", "b0", "b1"))
-        return [
-            _model_head(model)
-            | nothing
-            | {"n": 0, "n_series": 0, "n_parameters": model.n_parameters}
-            | {"rmse_N": None, "rmse_dof_N": None, "rmse_free_N": None, "at_bound": [], "intervals": dict(nothing)}
-            for model in MODELS
-        ]
+        nan = math.nan
+        fits = (ModelFit(row, nan, nan, nan, nan, 0, 0, row.n_parameters, nan, nan, nan, (), nan) for row in MODELS)
+        return [_model(fit, None) for fit in fits]
     return [_model(fit, table.intervals.get(fit.model)) for fit in table.fits]
-
-
-def _model_head(model: Model) -> Json:
-    return {"id": model.id, "hardness": model.hardness, "a": model.a, "b": model.b}
 
 
 def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
@@ -229,20 +220,21 @@ def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
     for index, (name, factor) in enumerate(factors.items()):
         if intervals is not None and getattr(fit.model, name[0]) in forms[name]:
             pairs[name] = (intervals[index] * factor).tolist()
-    return (
-        _model_head(fit.model)
-        | {name: getattr(fit, name) * factor for name, factor in factors.items()}
-        | {
-            "n": fit.n,
-            "n_series": fit.n_series,
-            "n_parameters": fit.n_parameters,
-            "rmse_N": fit.rmse,
-            "rmse_dof_N": fit.rmse_dof,
-            "rmse_free_N": fit.rmse_free,
-            "at_bound": list(fit.at_bound),
-            "intervals": pairs,
-        }
-    )
+    return {
+        "id": fit.model.id,
+        "hardness": fit.model.hardness,
+        "a": fit.model.a,
+        "b": fit.model.b,
+        **{name: getattr(fit, name) * factor for name, factor in factors.items()},
+        "n": fit.n,
+        "n_series": fit.n_series,
+        "n_parameters": fit.n_parameters,
+        "rmse_N": fit.rmse,
+        "rmse_dof_N": fit.rmse_dof,
+        "rmse_free_N": fit.rmse_free,
+        "at_bound": list(fit.at_bound),
+        "intervals": pairs,
+    }
 
 
 def nested_row(row: NestedRows) -> Json:

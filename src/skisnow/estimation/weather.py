@@ -103,11 +103,9 @@ def _moment(text: str, utc_offset: float) -> float:
 def weather_results(weather: CampaignWeather, at_tests: WeatherAtTests) -> Json:
     """The station, a row for each experiment and one for each site; NaN for unknown values."""
     series = weather.series
-    columns = {"kind": at_tests.kind, "experiment": at_tests.experiment, "site": at_tests.site, "time": at_tests.time}
+    names = {"kind": at_tests.kind, "experiment": at_tests.experiment, "site": at_tests.site, "time": at_tests.time}
+    columns = names | {key: tuple(values.tolist()) for key, values in at_tests.quantities.items()}
     rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*columns.values(), strict=True)]
-    for key, values in at_tests.quantities.items():
-        for row, value in zip(rows, values.tolist(), strict=True):
-            row[key] = value
     return {
         "file": series.file,
         "station": series.station,

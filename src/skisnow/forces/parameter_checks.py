@@ -94,7 +94,7 @@ def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:
 
 
 _BOTH: Final = Message("{first}; {second}", first=moessner_2013.SOURCE, second=federolf_2006.SOURCE)
-_FEDEROLF: Final = tuple(federolf_2006.snows().values())
+_FEDEROLF: Final = tuple(federolf_2006.named_snows().values())
 
 SNOW_HARDNESS: Final = MeasuredRange(
     "snow hardness H_V",

@@ -6,7 +6,7 @@ import difflib
 import hashlib
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -183,8 +183,13 @@ def collect_data(
     starts = _run_starts(scenario_input.identify.get("runs", {}), runs)
     _require_not_free(starts, keys)
     own = {key.partition("@")[0] for key in keys}
-    warnings = [_start_warning(track, scenario, starts, own) for track in tracks]
-    if _FROM_FIRST_POINT in methods and not {"start.x_m", "start.y_m"} <= own:
+    start_is_free = {"start.x_m", "start.y_m"} <= own
+    begins = [{**scenario.values, **starts.get(track.name, {})} for track in tracks]
+    warnings = [
+        require_near(track, (float(begin["start.x_m"]), float(begin["start.y_m"])), start_is_free=start_is_free)
+        for track, begin in zip(tracks, begins, strict=True)
+    ]
+    if _FROM_FIRST_POINT in methods and not start_is_free:
         warnings.append(_START_OF_FIRST_POINT)
     snow = set(SNOW_NUMBERS) & own.union(*starts.values())
     return IdentificationData(
@@ -252,14 +257,6 @@ def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) 
     return starts
 
 
-def _start_warning(
-    track: TrackPoints, scenario: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Set[str]
-) -> str | None:
-    own = {**scenario.values, **starts.get(track.name, {})}
-    free = {"start.x_m", "start.y_m"} <= keys
-    return require_near(track, (float(own["start.x_m"]), float(own["start.y_m"])), start_is_free=free)
-
-
 def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str]) -> None:
     """Reject a value for a single run if the same key is free with one value for all runs."""
     for run, values in own.items():
@@ -294,18 +291,23 @@ def move_to_scenario_frame(
             "first point is used as the scenario's start"
         ).tag("site_missing", name=track.name)
     parsed = _read_site(site)
-    azimuth = parsed.fall_line_azimuth_deg * DEGREE
-    slope = scenario.scenario.slope
-    angle = slope.angle if isinstance(slope, Plane) else None
+    plane = scenario.scenario.slope if isinstance(scenario.scenario.slope, Plane) else None
     if parsed.latitude_deg is not None and parsed.longitude_deg is not None and track.origin is not None:
         height = track.origin.height if parsed.height_m is None else parsed.height_m
         point = GeodeticPoint(parsed.latitude_deg, parsed.longitude_deg, height)
-        origin = _place_of(point, track)
-        turned = in_slope_frame(
-            track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
-        )
-        return turned, [f"tracks are counted from the site at {point}"]
-    return _from_its_first_point(track, scenario, azimuth, angle)
+        origin, beginning, method = _place_of(point, track), np.zeros(3), f"tracks are counted from the site at {point}"
+    else:
+        origin = np.nan_to_num(track.place[int(np.argmax(track.usable))])
+        start = scenario.scenario.start
+        beginning, method = np.array([start.x, start.y, 0.0]), _FROM_FIRST_POINT
+    turned = in_slope_frame(
+        track,
+        fall_line_azimuth=parsed.fall_line_azimuth_deg * DEGREE,
+        slope_angle=None if plane is None else plane.angle,
+        origin=origin,
+        missing_height="on_slope",
+    )
+    return replace(turned, place=turned.place + beginning), [method]
 
 
 _FROM_FIRST_POINT: Final = "the first point of each track is taken as the scenario's start; its error is in all points"
@@ -313,19 +315,6 @@ _START_OF_FIRST_POINT: Final = Message(
     "The first point of each track is taken as the scenario's start. Its error is in all points, and no interval "
     "counts it. Add start.x,start.y to --free, or give the place of the slope in [identify.site]."
 )
-
-
-def _from_its_first_point(
-    track: Track, scenario: ScenarioFile, azimuth: float, angle: float | None
-) -> tuple[Track, list[str]]:
-    first = int(np.argmax(track.usable))
-    origin = np.nan_to_num(track.place[first])
-    turned = in_slope_frame(
-        track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
-    )
-    start = scenario.scenario.start
-    place = turned.place + np.array([start.x, start.y, 0.0])
-    return replace(turned, place=place), [_FROM_FIRST_POINT]
 
 
 def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:

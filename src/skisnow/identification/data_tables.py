@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from .._support.arrays import BoolArray, FloatArray
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
@@ -117,20 +117,15 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
     for name in dict.fromkeys(names):
         rows = np.array([run == name for run in names])
         try:
-            runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, spread, rows)))
+            unknown = np.isnan(spread[rows])
+            if unknown.any() and not unknown.all():
+                raise ParameterError(
+                    "run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none"
+                ).tag("partial_accuracy", name=name)
+            runs.append(PhotoCellRun(name, station[rows], time[rows], None if unknown.any() else spread[rows]))
         except ParameterError as error:
             raise ParameterError("{name}: {error}").tag(error.code, name=path, error=error) from error
     return PhotoCells(str(path), tuple(runs))
-
-
-def _sd_of_run(name: str, sd: FloatArray, rows: BoolArray) -> FloatArray | None:
-    if np.isnan(sd[rows]).all():
-        return None
-    if np.isnan(sd[rows]).any():
-        raise ParameterError("run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none").tag(
-            "partial_accuracy", name=name
-        )
-    return sd[rows]
 
 
 GROOVE_COLUMNS: Final = ("depth_mm", "width_mm", "turn_radius_m")

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from .._support.errors import FitError, ParameterError
+from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.processes.batch import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, forget
@@ -25,10 +25,10 @@ from .data import Data, IdentificationData, collect_data, fingerprint, start_val
 from .groove_residuals import GrooveResiduals, require_groove_stays
 from .grooves_alone import identify_from_grooves
 from .intervals import require_bootstrap
-from .parameter import Parameter, parameter_table
+from .parameter import parameter_table
 from .photo_cell_times import PhotoCellTimes
 from .problem import Kind, Observations, expand_keys, unweighted_problem
-from .result import Effort, Identification
+from .result import Identification
 from .simulations import RunSimulation, Simulations
 from .solution import BootstrapBy, SearchRequest, too_few_points
 from .solving import solve
@@ -165,7 +165,14 @@ def identify(
             warnings=(*measurements.warnings, *([unused] if fixed else [])),
             methods=measurements.methods,
         )
-        result = _search_parameters(parameters, observations, request)
+        problem, only = unweighted_problem(parameters, observations), observations[0]
+        needed = len(parameters) + problem.nuisances + (not problem.accuracy_is_stated)
+        if not problem.priors and problem.points < needed:
+            result = too_few_points(problem, request)
+        elif len(observations) == 1 and isinstance(only, GrooveResiduals):
+            result = identify_from_grooves(parameters, only, request)
+        else:
+            result = solve(problem, request)
         return replace(
             result,
             data=measurements.descriptions,
@@ -176,18 +183,6 @@ def identify(
                 wall_s=time.monotonic() - begun,
             ),
         )
-
-
-def _search_parameters(
-    parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], request: SearchRequest
-) -> Identification:
-    problem = unweighted_problem(parameters, observations)
-    if not problem.priors and problem.points < len(parameters) + problem.nuisances + (not problem.accuracy_is_stated):
-        return too_few_points(problem, request)
-    only = observations[0]
-    if len(observations) == 1 and isinstance(only, GrooveResiduals):
-        return identify_from_grooves(parameters, only, request)
-    return solve(problem, request)
 
 
 def _make_observations(
@@ -238,6 +233,3 @@ class _ProgressCounter:
         """Report the current step."""
         self.doing = doing
         self.progress(f"{doing}; {self.runs} simulated runs" if self.runs else doing)
-
-
-__all__ = ["Effort", "FitError", "Identification", "identify"]

@@ -131,17 +131,14 @@ class GrooveResiduals:
         return max(self.demand(values, turn_radius), 0.0) / (2.0 * groove.grip_area) / N_PER_MM2
 
     @property
-    def mean_radius(self) -> float:
-        """Weighted mean of the measured radii (m), NaN without any."""
+    def mean_radius(self) -> tuple[float, float]:
+        """Weighted mean of the measured radii, and its standard deviation (m); NaN without any."""
         use = np.isfinite(self.measured.turn_radius)
+        if not use.any():
+            return math.nan, math.nan
         weight = self.measured.turn_radius_sd[use] ** -2.0
-        return float(np.sum(weight * self.measured.turn_radius[use]) / np.sum(weight)) if use.any() else math.nan
-
-    @property
-    def mean_radius_sd(self) -> float:
-        """Its standard deviation (m)."""
-        use = np.isfinite(self.measured.turn_radius)
-        return float(np.sum(self.measured.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
+        mean = float(np.sum(weight * self.measured.turn_radius[use]) / np.sum(weight))
+        return mean, float(np.sum(weight) ** -0.5)
 
     def _columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
         grooves = self.measured

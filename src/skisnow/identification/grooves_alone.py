@@ -43,7 +43,8 @@ def identify_from_grooves(
 
 def _edge_slid(others: tuple[Parameter, ...], grooves: GrooveResiduals, plan: SearchRequest) -> bool:
     """True if the measured radius is significantly larger than that of an edge that holds."""
-    if not math.isfinite(grooves.mean_radius):
+    mean_radius, _ = grooves.mean_radius
+    if not math.isfinite(mean_radius):
         return False
     if not others:
         residuals, values, dof = grooves.residuals([{}])[0], {}, grooves.points
@@ -58,14 +59,14 @@ def _edge_slid(others: tuple[Parameter, ...], grooves: GrooveResiduals, plan: Se
     if residuals is None or groove is None:
         return False
     worse = float(chi2.sf(float(residuals @ residuals), dof)) < SLIDING_PROBABILITY
-    return worse and grooves.mean_radius > groove.turn_radius
+    return worse and mean_radius > groove.turn_radius
 
 
 def _identify_sliding(
     parameters: tuple[Parameter, ...], strength: Parameter, grooves: GrooveResiduals, plan: SearchRequest
 ) -> Identification:
     sliding = replace(grooves, slides=True)
-    begin = sliding.required_strength({}, grooves.mean_radius)
+    begin = sliding.required_strength({}, grooves.mean_radius[0])
     own = strength
     if begin is not None and strength.lower < begin < strength.upper:
         own = replace(strength, start=begin)
@@ -154,7 +155,7 @@ def _strength_bound(
     grooves: GrooveResiduals, values: dict[str, float], identification: Identification
 ) -> tuple[float | None, float | None]:
     """S_f that the turn needed (N/mm²), and the lower end of its one-sided 95 % interval."""
-    radius = grooves.mean_radius
+    radius, radius_sd = grooves.mean_radius
     bound = grooves.required_strength(values, radius) if math.isfinite(radius) else None
     if bound is None:
         return None, None
@@ -165,7 +166,7 @@ def _strength_bound(
         moved = grooves.required_strength({**values, key: values[key] + step}, radius)
         slopes.append(0.0 if moved is None or step == 0.0 else (moved - bound) / step)
     slope = np.array(slopes)
-    wider = grooves.required_strength(values, radius + grooves.mean_radius_sd)
+    wider = grooves.required_strength(values, radius + radius_sd)
     variance = (0.0 if wider is None else (wider - bound) ** 2) + float(
         slope @ np.nan_to_num(identification.covariance, posinf=0.0) @ slope if keys else 0.0
     )

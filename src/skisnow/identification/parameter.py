@@ -11,10 +11,20 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.messages import template
 from ..parameters import Search
 from ..scenario.keys import SCENARIO_KEYS, short_name
 
 _TIMES_START: Final = 5.0
+_NOT_FINITE: Final = template("{key}: {name} is {value}; it must be a finite number")
+_SWAPPED: Final = template("{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper")
+_EXCLUDED: Final = template(
+    "{key}: the bounds, {lower:g} to {upper:g}{unit}, exclude the start, {start:g}. Widen them, or start inside"
+)
+_LOWER_BELOW_ZERO: Final = template("{key}: lower is {lower:g}{unit}; it must be above 0")
+_HALF_PRIOR: Final = template("{key}: {missing} is missing; a prior has a mean and a standard deviation")
+_PRIOR_SD: Final = template("{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0")
+_PRIOR_MEAN: Final = template("{key}: prior_mean is {prior_mean}; it must be a finite number")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,51 +61,30 @@ class Parameter:
     prior_sd: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("start", "lower", "upper", "size"):
-            if not math.isfinite(getattr(self, name)):
-                raise ParameterError("{key}: {name} is {value}; it must be a finite number").tag(
-                    "not_a_number", key=self.key, name=name, value=getattr(self, name)
-                )
-        if not self.lower < self.upper:
-            raise ParameterError("{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper").tag(
-                "swapped_bounds", key=self.key, lower=self.lower, upper=self.upper, unit=self._unit
-            )
-        if not self.lower <= self.start <= self.upper:
-            raise ParameterError(
-                "{key}: the bounds, {lower:g} to {upper:g}{unit}, exclude the start, {start:g}. Widen them, or start "
-                "inside"
-            ).tag(
-                "start_outside_bounds",
-                key=self.key,
-                lower=self.lower,
-                upper=self.upper,
-                unit=self._unit,
-                start=self.start,
-            )
-        if self.logarithmic and self.lower <= 0.0:
-            raise ParameterError("{key}: lower is {lower:g}{unit}; it must be above 0").tag(
-                "out_of_range", key=self.key, lower=self.lower, unit=self._unit
-            )
-        self._require_prior()
-
-    def _require_prior(self) -> None:
-        if (self.prior_mean is None) != (self.prior_sd is None):
-            missing = "prior_sd" if self.prior_sd is None else "prior_mean"
-            raise ParameterError("{key}: {missing} is missing; a prior has a mean and a standard deviation").tag(
-                "half_prior", key=self.key, missing=missing
-            )
-        if self.prior_sd is not None and not (math.isfinite(self.prior_sd) and self.prior_sd > 0.0):
-            raise ParameterError("{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0").tag(
-                "out_of_range", key=self.key, prior_sd=self.prior_sd, unit=self._unit
-            )
-        if self.prior_mean is not None and not math.isfinite(self.prior_mean):
-            raise ParameterError("{key}: prior_mean is {prior_mean}; it must be a finite number").tag(
-                "not_a_number", key=self.key, prior_mean=self.prior_mean
-            )
-
-    @property
-    def _unit(self) -> str:
-        return f" {self.unit}" if self.unit else ""
+        stated = {"prior_mean": self.prior_mean, "prior_sd": self.prior_sd}
+        numbers = {name: getattr(self, name) for name in ("start", "lower", "upper", "size")}
+        missing = [name for name, value in stated.items() if value is None]
+        bad = next((name for name, number in numbers.items() if not math.isfinite(number)), "")
+        mean, sd = self.prior_mean, self.prior_sd
+        for is_wrong, problem, code in (
+            (bad, _NOT_FINITE, "not_a_number"),
+            (not self.lower < self.upper, _SWAPPED, "swapped_bounds"),
+            (not self.lower <= self.start <= self.upper, _EXCLUDED, "start_outside_bounds"),
+            (self.logarithmic and self.lower <= 0.0, _LOWER_BELOW_ZERO, "out_of_range"),
+            (len(missing) == 1, _HALF_PRIOR, "half_prior"),
+            (sd is not None and not 0.0 < sd < math.inf, _PRIOR_SD, "out_of_range"),
+            (mean is not None and not math.isfinite(mean), _PRIOR_MEAN, "not_a_number"),
+        ):
+            if is_wrong:
+                unit = f" {self.unit}" if self.unit else ""
+                own = {
+                    "key": self.key,
+                    "unit": unit,
+                    "name": bad,
+                    "value": numbers.get(bad),
+                    "missing": "".join(missing),
+                }
+                raise ParameterError(problem).tag(code, **own, **numbers, **stated)
 
     def scaled(self, value: float) -> float:
         """The value on the scale of the search: 0 at the start, 1 at one `size` from it."""

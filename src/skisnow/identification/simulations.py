@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from types import TracebackType
-from typing import Final, Self
+from typing import Final
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -36,8 +37,8 @@ _TOWARDS_LIMIT: Final = {"snow.S_f_N_per_mm2": -1.0}
 
 
 @dataclass(slots=True)
-class Simulations:
-    """Simulates batches of tasks in parallel; each different task is simulated once.
+class Simulations(AbstractContextManager["Simulations"]):
+    """Simulates batches of tasks in parallel, each different task once; processes start with the first tasks.
 
     workers: number of processes (default: the number of cores available to this process); 1: this process itself.
     progress: called with the number of runs computed so far.
@@ -69,10 +70,6 @@ class Simulations:
             self.computed += self.stored.add(rows)
             self.progress(self.computed)
         return [self.stored.row(number) for number in numbers]
-
-    def __enter__(self) -> Self:
-        """Return self; processes start with the first tasks."""
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

@@ -179,7 +179,7 @@ def published_names() -> tuple[str, ...]:
     >>> published_names()
     ('race-piste', 'recreational-piste', 'spring-snow', 'fresh-snow', 'glacier')
     """
-    return tuple(_by_name())
+    return (*federolf_2006.NAMES, *moessner_2013.NAMED_SNOWS)
 
 
 def published_snow(name: str) -> SnowProperties:
@@ -218,7 +218,7 @@ def published_snow(name: str) -> SnowProperties:
     >>> round(snow.snow_hardness / 1e9, 2), round(snow.failure_shear_stress / 1e6, 2)  # N/mm³ and N/mm²
     (0.21, 0.52)
     """
-    snows = _by_name()
+    snows = {**federolf_2006.named_snows(), **moessner_2013.named_snows()}
     if name not in snows:
         near = get_close_matches(str(name).strip().lower().replace("_", "-").replace(" ", "-"), snows, n=1, cutoff=0.4)
         problem = (
@@ -228,7 +228,3 @@ def published_snow(name: str) -> SnowProperties:
         )
         raise ParameterError("{problem} There are {names}").tag("unknown_name", problem=problem, names=list(snows))
     return snows[name]
-
-
-def _by_name() -> dict[str, SnowProperties]:
-    return {**federolf_2006.named_snows(), **moessner_2013.named_snows()}

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import ndtri
+from scipy.special import ndtri, stdtrit
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
@@ -50,10 +50,9 @@ def mean_snow(
         snow_hardness=math.exp(H_V) * N_PER_MM3,
         failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
         source=source,
-        snow_hardness_interval=_interval_in_unit(
-            H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
-        ),
-        failure_shear_stress_interval=_interval_in_unit(S_f_interval, N_PER_MM2),
+        snow_hardness_interval=H_V_interval
+        and (math.exp(H_V_interval[0]) * N_PER_MM3, math.exp(H_V_interval[1]) * N_PER_MM3),
+        failure_shear_stress_interval=S_f_interval and (S_f_interval[0] * N_PER_MM2, S_f_interval[1] * N_PER_MM2),
     )
 
 
@@ -109,17 +108,11 @@ def no_used_experiment(source: object, site: str | None, sites: Sequence[str]) -
     return ParameterError(message).tag("no_data")
 
 
-def _interval_in_unit(interval: Interval | None, unit: float) -> Interval | None:
-    return interval and (interval[0] * unit, interval[1] * unit)
-
-
 def _mean(values: FloatArray) -> tuple[float, Interval | None]:
     """The mean and its interval by Student's t; no interval for a single value."""
     mean = math.fsum(values.tolist()) / values.size
     if values.size < 2:
         return mean, None
-    from scipy.special import stdtrit  # slow to load, and asked for with a campaign at hand only
-
     quantile = float(stdtrit(values.size - 1, 0.5 + CONFIDENCE / 2.0))
     half = quantile * float(np.std(values, ddof=1)) / math.sqrt(values.size)
     return mean, (mean - half, mean + half)
@@ -136,10 +129,13 @@ def drawn_snows(snow: SnowProperties, shares: FloatArray) -> list[SnowProperties
     snows show how well the mean is known, not how much the snow of a slope changes from place to place. H_V and S_f are
     drawn independently (modelling assumption).
     """
-    hardness, stress = measured_intervals(snow)
-    of_hardness, of_stress = _drawn(hardness, shares[:, 0]), _drawn(stress, shares[:, 1])
+    quantile = float(ndtri(0.5 + CONFIDENCE / 2.0))
+    drawn: list[list[float]] = []
+    for interval, column in zip(measured_intervals(snow), shares.T, strict=True):
+        low, high = map(math.log, interval)
+        drawn.append(np.exp((low + high) / 2.0 + (high - low) / 2.0 / quantile * ndtri(column)).tolist())
     source = f"drawn from the intervals of {snow.source}"
-    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness, of_stress, strict=True)]
+    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(*drawn, strict=True)]
 
 
 def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
@@ -172,12 +168,4 @@ def log_normal(value: float, interval: Interval, shares: FloatArray) -> FloatArr
     low, high = (math.log(end / value) for end in interval)
     place = ndtri(shares) / float(ndtri(0.5 + CONFIDENCE / 2.0))
     drawn: FloatArray = value * np.exp(place * np.where(place < 0.0, -low, high))
-    return drawn
-
-
-def _drawn(interval: Interval, shares: FloatArray) -> list[float]:
-    """Quantiles of the log-normal distribution with this 95 % interval."""
-    low, high = map(math.log, interval)
-    half = float(ndtri(0.5 + CONFIDENCE / 2.0))
-    drawn: list[float] = np.exp((low + high) / 2.0 + (high - low) / 2.0 / half * ndtri(shares)).tolist()
     return drawn

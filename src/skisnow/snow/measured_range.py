@@ -112,26 +112,34 @@ class PenetrometerRelation:
 
     source: the publication in short.
     window: length of the windows that it was fitted with (m).
-    snow_density: ρ (kg/m³) of F and L.
+    density: coefficients of ρ, see `density_of_form` of Proksch and others (2015).
     specific_surface_area: SSA (m²/kg) of F and L, or None.
+
+    >>> laws, F, L = PENETROMETER_RELATIONS.values(), np.array(2.0), np.array(0.5e-3)
+    >>> [round(float(law.snow_density(F, L)), 3) for law in laws]
+    [364.529, 349.502, 288.843, 287.291]
     """
 
     source: str
     window: float
-    snow_density: Callable[[FloatArray, FloatArray], FloatArray]
+    density: tuple[float, float, float, float]
     specific_surface_area: Callable[[FloatArray, FloatArray], FloatArray] | None = None
+
+    def snow_density(self, median_force: FloatArray, element_size: FloatArray) -> FloatArray:
+        """ρ (kg/m³) of F (N) and L (m)."""
+        return proksch_2015.density_of_form(self.density, median_force, element_size)
 
 
 PENETROMETER_RELATIONS: Final[Mapping[str, PenetrometerRelation]] = MappingProxyType(
     {
         "proksch-2015": PenetrometerRelation(
-            proksch_2015.SOURCE, proksch_2015.WINDOW, proksch_2015.snow_density, proksch_2015.specific_surface_area
+            proksch_2015.SOURCE, proksch_2015.WINDOW, proksch_2015.DENSITY, proksch_2015.specific_surface_area
         ),
         "calonne-2020": PenetrometerRelation(
-            calonne_2020.SOURCE, calonne_2020.WINDOW, calonne_2020.snow_density, calonne_2020.specific_surface_area
+            calonne_2020.SOURCE, calonne_2020.WINDOW, calonne_2020.DENSITY, calonne_2020.specific_surface_area
         ),
-        "king-2020a": PenetrometerRelation(king_2020.SOURCE, king_2020.WINDOW, king_2020.snow_density_a),
-        "king-2020b": PenetrometerRelation(king_2020.SOURCE, king_2020.WINDOW, king_2020.snow_density_b),
+        "king-2020a": PenetrometerRelation(king_2020.SOURCE, king_2020.WINDOW, king_2020.DENSITY_A),
+        "king-2020b": PenetrometerRelation(king_2020.SOURCE, king_2020.WINDOW, king_2020.DENSITY_B),
     }
 )
 """By name. A further relation is one more publication's file and its entry here."""

@@ -94,13 +94,9 @@ class SnowProperties(Shown):
     @property
     def in_words(self) -> str:
         """Both values with their intervals, the unloading ratio where it is known, and the source."""
-        hardness = _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
-        stress = _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
-        ratio = _with_interval(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")
-        ratio = "" if self.unloading_ratio is None else f", k_u/H_V {ratio}"
-        way = _with_interval(self.shear_displacement, self.shear_displacement_interval, MM, "mm")
-        way = "" if self.shear_displacement is None else f", u_y {way}"
-        return f"H_V {hardness}, S_f {stress}{ratio}{way}: {self.source}"
+        known = {"H_V": True, "S_f": True}
+        known |= {"k_u/H_V": self.unloading_ratio is not None, "u_y": self.shear_displacement is not None}
+        return f"{', '.join(f'{name} {text}' for name, text in self._rows() if known[name])}: {self.source}"
 
     def without_measured(self, *, unloading: bool = False, displacement: bool = False) -> SnowProperties:
         """The snow without its measured k_u/H_V or u_y, which a scenario's number replaces."""
@@ -115,13 +111,15 @@ class SnowProperties(Shown):
         return Facts(self.in_words)
 
     def _notebook_facts(self) -> Facts:
-        rows = (
+        return Facts(self.source, self._rows())
+
+    def _rows(self) -> tuple[tuple[str, str], ...]:
+        return (
             ("H_V", _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")),
             ("S_f", _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")),
             ("k_u/H_V", _with_interval(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")),
             ("u_y", _with_interval(self.shear_displacement, self.shear_displacement_interval, MM, "mm")),
         )
-        return Facts(self.source, rows)
 
 
 def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
@@ -129,8 +127,8 @@ def _with_interval(value: float | None, interval: Interval | None, size: float, 
     return text if interval is None else f"{text} ({span(interval[0] / size, interval[1] / size)})"
 
 
-def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves: bool) -> None:
-    """Refuse a named snow that has no S_f where one is needed, or one that has S_f next to a given one.
+def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves: bool) -> SnowProperties:
+    """A named snow, with a given S_f if it lacks one.
 
     Raises ParameterError: S_f comes from both sides, or from none although the ski carves.
     """
@@ -144,10 +142,6 @@ def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves:
             "this snow ({source}) has no failure shear stress S_f, which a carved turn needs. Add S_f_N_per_mm2 "
             "(--S-f-N-per-mm2), or compute the ski at rest (--at-rest)"
         ).tag("no_data", source=snow.source)
-
-
-def with_stress(snow: SnowProperties, S_f_N_per_mm2: float | None) -> SnowProperties:
-    """The snow, with a given S_f if it lacks one."""
     if S_f_N_per_mm2 is None:
         return snow
     stress = S_f_N_per_mm2 * N_PER_MM2

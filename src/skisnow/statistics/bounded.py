@@ -6,7 +6,6 @@ conditions is the answer: coefficients > 0 where free, and for a coefficient on 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
@@ -126,11 +125,14 @@ def _best_support(A: FloatArray, z: FloatArray, n: int) -> Solved:
         return Solved(free, rank)
     best, least = np.zeros(p), np.inf
     for support in _supports(p)[1:]:
-        x = _solved_on(A, z, support, n)
-        if x is None:
-            continue
+        columns, x = list(support), np.zeros(p)
+        if columns:
+            solution, own_rank = _least_squares(A[:, columns], z, n)
+            if own_rank < len(columns) or not (solution > 0.0).all():  # dependent columns, or beyond the bound
+                continue
+            x[columns] = solution
         gain = A.T @ (z - A @ x)
-        gain[list(support)] = 0.0
+        gain[columns] = 0.0
         violation = max(float(np.max(gain, initial=0.0)), 0.0)
         if violation <= _KKT_TOLERANCE * (float(np.linalg.norm(z)) + float(np.sum(x))):
             return Solved(x, rank)
@@ -143,18 +145,6 @@ def _least_squares(A: FloatArray, z: FloatArray, n: int) -> tuple[FloatArray, in
     """The shortest least-squares solution, and the numerical rank."""
     solution, _, rank, _ = np.linalg.lstsq(A, z, rcond=max(n, A.shape[1]) * np.finfo(float).eps)
     return np.asarray(solution, dtype=float), int(rank)
-
-
-def _solved_on(A: FloatArray, z: FloatArray, support: tuple[int, ...], n: int) -> FloatArray | None:
-    """Least squares on the columns of the support; None where they depend on each other or a coefficient is not > 0."""
-    x = np.zeros(A.shape[1])
-    if support:
-        columns = list(support)
-        solution, rank = _least_squares(A[:, columns], z, n)
-        if rank < len(columns) or not (solution > 0.0).all():
-            return None
-        x[columns] = solution
-    return x
 
 
 def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
@@ -229,7 +219,7 @@ def _solved_batch(G: FloatArray, m: FloatArray, support: tuple[int, ...]) -> tup
     x, feasible = np.zeros_like(m), np.ones(m.shape[1], dtype=bool)
     lower: dict[tuple[int, int], FloatArray] = {}
     pivot: dict[int, FloatArray] = {}
-    for i, j in _lower_triangle(support):
+    for i, j in ((i, j) for j in support for i in support if i >= j):  # on and below the diagonal, by columns
         earlier = [k for k in support if k < j]
         entry = G[i, j].copy()
         for k in earlier:
@@ -251,8 +241,3 @@ def _solved_batch(G: FloatArray, m: FloatArray, support: tuple[int, ...]) -> tup
         feasible &= x[i] > 0
     x[:, ~feasible] = 0.0
     return x, feasible
-
-
-def _lower_triangle(support: tuple[int, ...]) -> Iterator[tuple[int, int]]:
-    """Entries on and below the diagonal, column by column."""
-    return ((i, j) for j in support for i in support if i >= j)

@@ -139,17 +139,14 @@ _DRAWS_AT_ONCE = 2**18
 """Draws of one chunk, some MB: what stays in the processor's cache."""
 
 
-def resampling_counts(
-    n_units: int, n_resamples: int, rng: np.random.Generator, *, chunk: int | None = None
-) -> Iterator[FloatArray]:
+def resampling_counts(n_units: int, n_resamples: int, rng: np.random.Generator) -> Iterator[FloatArray]:
     """Draw bootstrap resamples: n units from n units with replacement, as counts.
 
     n_units: Units, and draws in each resample, ≥ 1.
     n_resamples: Resamples in all, ≥ 0.
-    rng: Source of random numbers; the counts depend only on its state, not on ``chunk``.
-    chunk: Resamples in each array (default: some MB).
-    Returns: Shape (b, n_units), b ≤ chunk: number of draws of each unit; every row sums to n_units. Floats, for the
-        product with the units' contributions: ``counts @ contributions``.
+    rng: Source of random numbers.
+    Yields: Arrays of some MB, shape (b, n_units): number of draws of each unit; every row sums to n_units. Floats, for
+        the product with the units' contributions: ``counts @ contributions``.
 
     Examples
     --------
@@ -157,15 +154,11 @@ def resampling_counts(
     >>> rows.shape, rows.sum(axis=1).tolist()
     ((3, 5), [5.0, 5.0, 5.0])
     """
-    if n_units < 1 or n_resamples < 0 or (chunk is not None and chunk < 1):
-        raise ParameterError(
-            "n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed"
-        ).tag("out_of_range", n_units=n_units, n_resamples=n_resamples, chunk=chunk)
-    return _drawn(n_units, n_resamples, rng, chunk or max(1, _DRAWS_AT_ONCE // n_units))
-
-
-def _drawn(n_units: int, n_resamples: int, rng: np.random.Generator, chunk: int) -> Iterator[FloatArray]:
-    """Draw chunks of bootstrap counts."""
+    if n_units < 1 or n_resamples < 0:
+        raise ParameterError("n_units = {n_units}, n_resamples = {n_resamples}; at least 1 and 0 are needed").tag(
+            "out_of_range", n_units=n_units, n_resamples=n_resamples
+        )
+    chunk = max(1, _DRAWS_AT_ONCE // n_units)
     for start in range(0, n_resamples, chunk):
         b = min(chunk, n_resamples - start)
         # 64-bit integers: narrower ones are drawn in words whose rest is thrown away at the end of each call, and the

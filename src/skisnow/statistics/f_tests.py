@@ -118,14 +118,9 @@ def compact_letters(differ: npt.ArrayLike) -> list[str]:
         columns = list(dict.fromkeys([column for column in columns if not {a, b} <= column] + list(split)))
         columns = [column for column in columns if not any(column < other for other in columns)]
     columns.sort(key=sorted)
-    return [
-        "".join(_letter(index) for index, column in enumerate(columns) if group in column) for group in range(len(mask))
-    ]
-
-
-def _letter(index: int) -> str:
-    """Letters from a to z, then a1, b1 and so on."""
-    return chr(ord("a") + index % 26) + (str(index // 26) if index >= 26 else "")
+    # letters from a to z, then a1, b1 and so on
+    letters = [chr(ord("a") + index % 26) + str(index // 26 or "") for index in range(len(columns))]
+    return ["".join(letters[i] for i, column in enumerate(columns) if group in column) for group in range(len(mask))]
 
 
 def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, alpha: float = 0.05) -> int:

@@ -251,17 +251,12 @@ def _bias_reduced(fit: LeastSquares, cluster: npt.NDArray[np.intp], G: int) -> t
     adjust = (vector * root[:, None, :]) @ np.swapaxes(vector, 1, 2)
     score = np.einsum("gij,gj->gi", adjust, _cluster_sums(Q * fit.residuals[:, None], cluster, G))
     L = fit.loadings
-    lost = _determined_by_one(L, vector, alone)
+    # coefficients of which a single cluster determines a part
+    part = np.abs(np.einsum("jk,gkv->jgv", L, vector)) / np.linalg.norm(L, axis=1)[:, None, None]
+    lost: BoolArray = np.any(alone[None] & (part > np.sqrt(_WHOLLY)), axis=(1, 2))
     errors = np.sqrt(np.sum((score @ L.T) ** 2, axis=0))
     dof = np.array([_satterthwaite_degrees(share, adjust, row) for row in L])
     return np.where(lost, np.nan, errors), np.where(lost, np.nan, dof)
-
-
-def _determined_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> BoolArray:
-    """True for coefficients of which a single cluster determines a part."""
-    part = np.abs(np.einsum("jk,gkv->jgv", L, vector)) / np.linalg.norm(L, axis=1)[:, None, None]
-    held: BoolArray = np.any(alone[None] & (part > np.sqrt(_WHOLLY)), axis=(1, 2))
-    return held
 
 
 def _satterthwaite_degrees(share: FloatArray, adjust: FloatArray, row: FloatArray) -> float:

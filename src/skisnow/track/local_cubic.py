@@ -76,10 +76,16 @@ def local_cubic(
     pieces = []
     for start in range(0, len(centres), _CHUNK):
         chunk = centres[start : start + _CHUNK]
-        sums = _Moments(len(chunk), place.values.shape[1])
+        of_place, of_rate = (_Moments(len(chunk), place.values.shape[1], terms) for terms in (TERMS, TERMS - 1))
         for offset in range(int((first[chunk] - chunk).min()), int((last[chunk] - chunk).max())):
-            sums.add(time, (chunk, first[chunk], last[chunk], offset), half, place, rate)
-        pieces.append(_solve(sums, half))
+            other = np.clip(chunk + offset, 0, len(time) - 1)
+            inside = (chunk + offset >= first[chunk]) & (chunk + offset < last[chunk])
+            tau = (time[other] - time[chunk]) / half
+            apart = place.values[other] - place.values[chunk]
+            of_place.add(tau, np.where(inside, place.weight[other], 0.0), apart)
+            if rate is not None:
+                of_rate.add(tau, np.where(inside, rate.weight[other], 0.0), rate.values[other])
+        pieces.append(_solve(of_place, of_rate, half))
     fits = LocalCubic(*(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
     return fits if len(centres) == len(time) else _shift_fits(fits, (time, half), centres, centre_of, place.values)
 
@@ -113,91 +119,51 @@ def _shift_fits(
     coefficients = shift @ fits.coefficients[centre_of]
     coefficients[:, 0] += values[centres][centre_of] - values
     covariance = shift @ fits.covariance[centre_of] @ shift.transpose(0, 2, 1)
-    return LocalCubic(
-        coefficients,
-        covariance,
-        fits.place_misfit[centre_of],
-        fits.rate_misfit[centre_of],
-        fits.place_count[centre_of],
-        fits.rate_count[centre_of],
-    )
+    of_windows = ("place_misfit", "rate_misfit", "place_count", "rate_count")
+    return LocalCubic(coefficients, covariance, *(getattr(fits, name)[centre_of] for name in of_windows))
 
 
 class _Moments:
-    """Sums over the windows of all points for the normal equations of the local cubics: weights, values and rates."""
+    """Sums over the windows of all points for the normal equations of the local cubics, of places or of rates."""
 
-    def __init__(self, count: int, coordinates: int) -> None:
-        self.place = np.zeros((2 * TERMS - 1, count))
-        self.place_values = np.zeros((TERMS, count, coordinates))
-        self.place_squares = np.zeros(count)
-        self.rate = np.zeros((2 * TERMS - 3, count))
-        self.rate_values = np.zeros((TERMS - 1, count, coordinates))
-        self.rate_squares = np.zeros(count)
-        self.place_count = np.zeros(count, dtype=np.int64)
-        self.rate_count = np.zeros(count, dtype=np.int64)
+    def __init__(self, count: int, coordinates: int, terms: int) -> None:
+        self.moments = np.zeros((2 * terms - 1, count))
+        self.products = np.zeros((terms, count, coordinates))
+        self.squares = np.zeros(count)
+        self.count = np.zeros(count, dtype=np.int64)
 
-    def add(
-        self,
-        time: FloatArray,
-        where: tuple[IntArray, IntArray, IntArray, int],
-        half: float,
-        place: WeightedValues,
-        rate: WeightedValues | None,
-    ) -> None:
-        """Add the point with the number ``offset`` above each point if it is in its window."""
-        point, first, last, offset = where
-        other = np.clip(point + offset, 0, len(time) - 1)
-        inside = (point + offset >= first) & (point + offset < last)
-        tau = (time[other] - time[point]) / half
-        weight = np.where(inside, place.weight[other], 0.0)
-        apart = place.values[other] - place.values[point]
-        self.place_count += weight > 0.0
-        self.place_squares += weight * np.einsum("nd,nd->n", apart, apart)
-        _add_powers(self.place, self.place_values, tau, weight, apart)
-        if rate is not None:
-            weight = np.where(inside, rate.weight[other], 0.0)
-            faster = rate.values[other]
-            self.rate_count += weight > 0.0
-            self.rate_squares += weight * np.einsum("nd,nd->n", faster, faster)
-            _add_powers(self.rate, self.rate_values, tau, weight, faster)
+    def add(self, tau: FloatArray, weight: FloatArray, values: FloatArray) -> None:
+        """Add one weighted value to each window, at τ."""
+        self.count += weight > 0.0
+        self.squares += weight * np.einsum("nd,nd->n", values, values)
+        power = weight.copy()
+        for exponent in range(len(self.moments)):
+            self.moments[exponent] += power
+            if exponent < len(self.products):
+                self.products[exponent] += power[:, None] * values
+            power *= tau
 
 
-def _add_powers(
-    moments: FloatArray, products: FloatArray, tau: FloatArray, weight: FloatArray, values: FloatArray
-) -> None:
-    power = weight.copy()
-    for exponent in range(len(moments)):
-        moments[exponent] += power
-        if exponent < len(products):
-            products[exponent] += power[:, None] * values
-        power *= tau
-
-
-def _solve(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
+def _solve(place: _Moments, rate: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
     """Solve the normal equations; return the fields of a LocalCubic."""
     order = np.arange(TERMS)
-    of_place = np.moveaxis(sums.place[order[:, None] + order], -1, 0)
+    of_place = np.moveaxis(place.moments[order[:, None] + order], -1, 0)
     of_rate = np.zeros_like(of_place)
     below = np.arange(1, TERMS)
     slopes = np.multiply.outer(below, below) / half**2  # derivatives of τ^p and τ^q by time: p q τ^(p+q-2) / h²
-    of_rate[:, 1:, 1:] = slopes * np.moveaxis(sums.rate[below[:, None] + below - 2], -1, 0)
-    right_place = np.moveaxis(sums.place_values, 0, 1)
+    of_rate[:, 1:, 1:] = slopes * np.moveaxis(rate.moments[below[:, None] + below - 2], -1, 0)
+    right_place = np.moveaxis(place.products, 0, 1)
     right_rate = np.zeros_like(right_place)
-    right_rate[:, 1:] = below[:, None] / half * np.moveaxis(sums.rate_values, 0, 1)
-    enough = sums.place_count >= FEWEST_POINTS
+    right_rate[:, 1:] = below[:, None] / half * np.moveaxis(rate.products, 0, 1)
+    enough = place.count >= FEWEST_POINTS
     covariance = np.full_like(of_place, np.nan)
     normal = (of_place + of_rate)[enough]
     ridge = _RIDGE * np.trace(normal, axis1=1, axis2=2)
     covariance[enough] = np.linalg.inv(normal + ridge[:, None, None] * np.eye(TERMS))
     coefficients = covariance @ (right_place + right_rate)
-    return (
-        coefficients,
-        covariance,
-        _misfit(sums.place_squares, coefficients, of_place, right_place),
-        _misfit(sums.rate_squares, coefficients, of_rate, right_rate),
-        sums.place_count,
-        sums.rate_count,
-    )
+    place_misfit = _misfit(place.squares, coefficients, of_place, right_place)
+    rate_misfit = _misfit(rate.squares, coefficients, of_rate, right_rate)
+    return coefficients, covariance, place_misfit, rate_misfit, place.count, rate.count
 
 
 def _misfit(squares: FloatArray, coefficients: FloatArray, normal: FloatArray, right: FloatArray) -> FloatArray:

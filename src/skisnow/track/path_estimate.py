@@ -122,18 +122,15 @@ class PathEstimate:
         return (speed[:, 1:] + speed[:, :-1]) / 2.0 * self.step[steps] + self.across[steps]
 
 
-def estimate_path(
-    time: FloatArray, place: FloatArray, part: IntArray, segment: IntArray, *, seed: int = 0
-) -> PathEstimate | None:
+def estimate_path(time: FloatArray, place: FloatArray, part: IntArray, segment: IntArray) -> PathEstimate | None:
     """Estimate the path through places.
 
     time: (n,) s, rising.
     place: (n, 3) m, finite x and y; heights NaN if unknown.
     part, segment: (n,), number of the part without a gap, and of the segment of the file, of each point.
-    seed: seed of the samples.
     Returns: None if no part has three points or no path can be fitted.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     pieces = [_average_close_points(time[part == number], place[part == number]) for number in np.unique(part)]
     interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
     scales = TimeScales(max(LONGEST_STEP, interval / 4.0), float(np.clip(RESOLVED * interval, *SPEED_TIMES)))

@@ -137,18 +137,6 @@ class Chain:
         self.log_scale = -0.5 * float(counts @ log_determinant)
 
 
-def turn_chain(period: float, step: FloatArray) -> Chain:
-    """Heading, turn rate of unit variance, and its rate."""
-    angular = 2.0 * np.pi / period
-    dynamics = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -(angular**2), -2.0 * DAMPING * angular]])
-    return Chain(dynamics, 4.0 * DAMPING * angular**3, step)
-
-
-def speed_chain(correlation_time: float, step: FloatArray) -> Chain:
-    """Chain of a speed and its acceleration, which is an Ornstein-Uhlenbeck process of unit variance."""
-    return Chain(np.array([[0.0, 1.0], [0.0, -1.0 / correlation_time]]), 2.0 / correlation_time, step)
-
-
 class PathModel:
     """Model of the path through the points of one stretch without a gap; its nodes are at and between the points.
 
@@ -164,7 +152,8 @@ class PathModel:
         self.step: FloatArray = np.repeat(np.diff(time) / counts, counts)
         self.time: FloatArray = np.interp(np.arange(self.count), self.points, time)
         self.place = place
-        self._speed = speed_chain(scales.speed_time, self.step)
+        dynamics = np.array([[0.0, 1.0], [0.0, -1.0 / scales.speed_time]])
+        self._speed = Chain(dynamics, 2.0 / scales.speed_time, self.step)  # acceleration of unit variance
         self._turns: dict[float, Chain] = {}
 
     def initial_state(self, place_noise: float) -> FloatArray:
@@ -244,8 +233,11 @@ class PathModel:
         return _Weights(place, turn, speed, band)
 
     def _turn_chain(self, parameters: MotionParameters) -> Chain:
+        """Chain of the heading, the turn rate of unit variance, and its rate."""
         if parameters.period not in self._turns:
-            self._turns[parameters.period] = turn_chain(parameters.period, self.step)
+            angular = 2.0 * np.pi / parameters.period
+            dynamics = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -(angular**2), -2.0 * DAMPING * angular]])
+            self._turns[parameters.period] = Chain(dynamics, 4.0 * DAMPING * angular**3, self.step)
         return self._turns[parameters.period]
 
     def _log_prior_scale(self, parameters: MotionParameters) -> float:

@@ -199,46 +199,35 @@ def point_flags(
     place: (n, 3) m, places; NaN if missing.
     fix: (n,) bool, True if the receiver had a fix.
     negative_speed: (n,) bool, True if the recorded speed was below zero.
-    solution: (n,) or None, kind of solution of each place, as in `Track`.
+    solution: (n,) or None, kind of solution of each place, as in `Track`. Code solutions are flagged only if other
+        points of the track are phase solutions.
     segment: (n,) or None, number of the segment of each point. A segment that continues the one before, at most 1.5
         usual intervals later and at a possible speed, is not flagged: some programs begin a segment for each lap.
     rounded, not_finite: (n,) bool or None, points whose time stamp was rounded, and points with a cell that is not a
         finite number.
     """
+    flags = {code: np.zeros(len(time), bool) for code in FLAGS}
     placed = fix & np.isfinite(place[:, :2]).all(axis=1)
-    repeated = np.zeros(len(time), bool)
-    repeated[1:] = np.diff(time) == 0.0
-    sure = np.flatnonzero(placed & ~repeated)
-    jump, impossible = np.zeros(len(time), bool), np.zeros(len(time), bool)
-    jumped, stepped = _impossible_points(time[sure], place[sure, :2])
-    apart = _segment_starts(time, place, sure, segment)
-    jump[sure[jumped]] = True
-    impossible[sure[stepped]] = True
-    jump &= ~apart
-    impossible &= ~apart
-    none = np.zeros(len(time), bool)
-    return {
-        "no_fix": ~placed,
-        "missing_height": placed & np.isnan(place[:, 2]),
-        "repeated_time": repeated,
-        "rounded_time": none.copy() if rounded is None else rounded,
-        "not_finite": none.copy() if not_finite is None else not_finite,
-        "new_segment": apart,
-        "gap": _after_gap(time) & ~apart,
-        "jump": jump,
-        "impossible_step": impossible,
-        "negative_speed": negative_speed,
-        **solution_flags(solution, len(time)),
-    }
-
-
-def _after_gap(time: FloatArray) -> BoolArray:
-    """True for points after a time step longer than `GAP_FACTOR` medians of the steps above zero."""
+    flags["no_fix"] = ~placed
+    flags["missing_height"] = placed & np.isnan(place[:, 2])
+    flags["negative_speed"] = negative_speed
+    if rounded is not None:
+        flags["rounded_time"] = rounded
+    if not_finite is not None:
+        flags["not_finite"] = not_finite
     steps = np.diff(time)
-    after = np.zeros(len(time), bool)
+    flags["repeated_time"][1:] = steps == 0.0
     if np.any(steps > 0.0):
-        after[1:] = steps > GAP_FACTOR * np.median(steps[steps > 0.0])
-    return after
+        flags["gap"][1:] = steps > GAP_FACTOR * np.median(steps[steps > 0.0])
+    sure = np.flatnonzero(placed & ~flags["repeated_time"])
+    flags["jump"][sure], flags["impossible_step"][sure] = _impossible_points(time[sure], place[sure, :2])
+    flags["new_segment"] = apart = _segment_starts(time, place, sure, segment)
+    for code in ("gap", "jump", "impossible_step"):
+        flags[code] &= ~apart
+    if solution is not None:
+        flags["float_solution"] |= solution == "float"
+        flags["code_solution"] |= (solution == "code") & _has_carrier_phase(solution)
+    return flags
 
 
 def _segment_starts(time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None) -> BoolArray:
@@ -253,8 +242,8 @@ def _segment_starts(time: FloatArray, place: FloatArray, sure: IntArray, segment
     return apart
 
 
-def _impossible_points(time: FloatArray, place: FloatArray) -> tuple[list[int], list[int]]:
-    """Numbers of the points that jump out and back, and of the other points reached at an impossible speed."""
+def _impossible_points(time: FloatArray, place: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """True (n,) for points that jump out and back, and for the other points reached at an impossible speed."""
     lengths = np.hypot(*np.diff(place, axis=0).T)
     fast = lengths > FASTEST * np.diff(time)
     last = len(time) - 1
@@ -263,9 +252,10 @@ def _impossible_points(time: FloatArray, place: FloatArray) -> tuple[list[int], 
         jumps.insert(0, 0)  # the first point alone is far from all that follow
     if last > 1 and fast[-1] and last - 1 not in jumps:
         jumps.append(last)
-    jump_set = set(jumps)
-    steps = [point for point in (np.flatnonzero(fast) + 1).tolist() if not jump_set & {point - 1, point}]
-    return jumps, steps
+    jump = np.isin(np.arange(len(time)), jumps)
+    step = np.zeros(len(time), bool)
+    step[1:] = fast & ~jump[1:] & ~jump[:-1]
+    return jump, step
 
 
 def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray) -> list[int]:
@@ -306,18 +296,6 @@ def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
         return None
     counts = {name: int(np.sum(solution == name)) for name in SOLUTIONS}
     return {name: count for name, count in counts.items() if count}
-
-
-def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, BoolArray]:
-    """The flags ``float_solution`` and ``code_solution``, each (count,) bool.
-
-    Code solutions are flagged only if other points of the track are phase solutions.
-    """
-    none = np.zeros(count, bool)
-    if solution is None:
-        return {"float_solution": none, "code_solution": none.copy()}
-    by_code = solution == "code" if _has_carrier_phase(solution) else none
-    return {"float_solution": np.asarray(solution == "float"), "code_solution": np.asarray(by_code)}
 
 
 def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:

@@ -13,7 +13,6 @@ from tests.coded import raises, warns
 
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError, RangeWarning
-from skisnow._support.messages import Message
 from skisnow.forces.penetration import (
     LAWS,
     AreaLaw,
@@ -280,7 +279,7 @@ def test_bilinear_force_is_the_integral_of_its_stress_and_bilinear_rejects_snow_
 def test_federolf_is_volume_and_shear_at_the_angle_of_conversion(name: str) -> None:
     """Mössner and others 2013: N = F_n cos ϑ + F_t sin ϑ with H_V and S_f as converted, in the wedge regime."""
     snow = published_snow(name)
-    slope, offset = federolf_2006.PRESSURE_LAWS[federolf_2006.NAMES[name]]
+    slope, offset = federolf_2006.PRESSURE_LAWS[name]
     law = MeanPressureLaw(slope * 1e9, offset * 1e6)
     angle = federolf_2006.CONVERSION_ANGLE
     depth = np.array([0.001, 0.01, 0.04])
@@ -341,7 +340,7 @@ def test_what_no_snow_can_have_is_rejected(make: Callable[[], object]) -> None:
 
 @pytest.mark.filterwarnings("error::skisnow._support.errors.RangeWarning")
 @pytest.mark.parametrize("name", federolf_2006.PRESSURE_LAWS)
-def test_the_pressure_laws_of_the_paper_lie_in_its_range(name: Message) -> None:
+def test_the_pressure_laws_of_the_paper_lie_in_its_range(name: str) -> None:
     """The slopes go from 0.0036 to 0.034 N/mm³, the offsets from 0.058 to 0.35 N/mm²; beyond is warned of."""
     slope, offset = federolf_2006.PRESSURE_LAWS[name]
     MeanPressureLaw(slope * 1e9, offset * 1e6)

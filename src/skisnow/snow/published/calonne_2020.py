@@ -18,20 +18,12 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.units import MM
-from .proksch_2015 import density_of_form
 
 SOURCE: Final = "Calonne and others 2020"
 WINDOW: Final = 1.0 * MM
 """Length of a window (m)."""
-
-
-def snow_density(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-    """ρ = 295.8 + 65.1 ln F - 43.2 L ln F + 47.1 L in kg/m³; F median force (N), L element size (mm).
-
-    >>> round(float(snow_density(np.array(1.0), np.array(0.5e-3))), 2)
-    319.35
-    """
-    return density_of_form((295.8, 65.1, -43.2, 47.1), median_force, element_size)
+DENSITY: Final = (295.8, 65.1, -43.2, 47.1)
+"""Coefficients of ρ = 295.8 + 65.1 ln F - 43.2 L ln F + 47.1 L (kg/m³)."""
 
 
 def specific_surface_area(median_force: FloatArray, element_size: FloatArray) -> FloatArray:

@@ -22,19 +22,19 @@ SOURCE: Final = Message("Federolf and others 2006, converted as in Mössner and 
 CONVERSION_ANGLE: Final = math.radians(55.0)
 """Edge angle ϑ of the conversion (rad): inferred, see Notes."""
 
-PRESSURE_LAWS: Final = {
-    Message("well-prepared race piste"): (0.034, 0.35),
-    Message("compact recreational piste"): (0.026, 0.058),
-    Message("spring snow"): (0.0036, 0.063),
-}
-"""A (N/mm³) and B (N/mm²) of p = A e + B by snow."""
-
 NAMES: Final = {
     "race-piste": Message("well-prepared race piste"),
     "recreational-piste": Message("compact recreational piste"),
     "spring-snow": Message("spring snow"),
 }
 """The paper's snow by the name that `skisnow.snow.from_results` takes."""
+
+PRESSURE_LAWS: Final = {
+    "race-piste": (0.034, 0.35),
+    "recreational-piste": (0.026, 0.058),
+    "spring-snow": (0.0036, 0.063),
+}
+"""A (N/mm³) and B (N/mm²) of p = A e + B by the same names."""
 
 
 def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) -> tuple[float, float]:
@@ -47,18 +47,11 @@ def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) 
     return 2.0 * pressure_slope / math.cos(edge_angle) ** 2, pressure_offset / math.sin(edge_angle) ** 2
 
 
-def snows() -> dict[str, SnowProperties]:
-    """The three snows by name, converted at 55°."""
-    by_name: dict[str, SnowProperties] = {}
-    for name, (slope, offset) in PRESSURE_LAWS.items():
-        H_V, S_f = converted(slope, offset, CONVERSION_ANGLE)
-        by_name[name] = SnowProperties(
-            H_V * N_PER_MM3, S_f * N_PER_MM2, Message("{source}: {snow}", source=SOURCE, snow=name)
-        )
-    return by_name
-
-
 def named_snows() -> dict[str, SnowProperties]:
-    """The three snows by the names of `skisnow.snow.from_results`."""
-    by_name = snows()
-    return {name: by_name[words] for name, words in NAMES.items()}
+    """The three snows by the names of `skisnow.snow.from_results`, converted at 55°."""
+    by_name: dict[str, SnowProperties] = {}
+    for name, law in PRESSURE_LAWS.items():
+        H_V, S_f = converted(*law, CONVERSION_ANGLE)
+        source = Message("{source}: {snow}", source=SOURCE, snow=NAMES[name])
+        by_name[name] = SnowProperties(H_V * N_PER_MM3, S_f * N_PER_MM2, source)
+    return by_name

@@ -15,30 +15,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from ..._support.arrays import FloatArray
 from ..._support.units import MM
-from .proksch_2015 import density_of_form
 
 SOURCE: Final = "King and others 2020"
 WINDOW: Final = 5.0 * MM
 """Length of a window (m)."""
-
-
-def snow_density_a(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-    """ρ = 315.61 + 46.94 ln F - 43.94 L ln F - 88.15 L in kg/m³; F median force (N), L element size (mm).
-
-    >>> import numpy as np
-    >>> round(float(snow_density_a(np.array(1.0), np.array(0.5e-3))), 3)
-    271.535
-    """
-    return density_of_form((315.61, 46.94, -43.94, -88.15), median_force, element_size)
-
-
-def snow_density_b(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-    """ρ = 312.54 + 50.27 ln F - 50.26 L ln F - 85.35 L in kg/m³; F median force (N), L element size (mm).
-
-    >>> import numpy as np
-    >>> round(float(snow_density_b(np.array(1.0), np.array(0.5e-3))), 3)
-    269.865
-    """
-    return density_of_form((312.54, 50.27, -50.26, -85.35), median_force, element_size)
+DENSITY_A: Final = (315.61, 46.94, -43.94, -88.15)
+"""Coefficients of ρ = 315.61 + 46.94 ln F - 43.94 L ln F - 88.15 L (kg/m³): fit a."""
+DENSITY_B: Final = (312.54, 50.27, -50.26, -85.35)
+"""The same of fit b."""

@@ -23,17 +23,8 @@ from ..._support.units import ICE_DENSITY, MM
 SOURCE: Final = "Proksch and others 2015"
 WINDOW: Final = 2.5 * MM
 """Length of a window (m)."""
-
-
-def snow_density(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-    """ρ = 420.47 + 102.47 ln F - 121.15 L ln F - 169.96 L in kg/m³; F median force (N), L element size in mm.
-
-    The argument `element_size` is in m.
-
-    >>> round(float(snow_density(np.array(1.0), np.array(0.5e-3))), 2)
-    335.49
-    """
-    return density_of_form((420.47, 102.47, -121.15, -169.96), median_force, element_size)
+DENSITY: Final = (420.47, 102.47, -121.15, -169.96)
+"""Coefficients of ρ = 420.47 + 102.47 ln F - 121.15 L ln F - 169.96 L (kg/m³)."""
 
 
 def density_of_form(
@@ -57,6 +48,6 @@ def specific_surface_area(median_force: FloatArray, element_size: FloatArray) ->
     8.97
     """
     length = (0.131 + 0.355 * element_size / MM + 0.0291 * np.log(median_force)) * MM
-    solid_share = snow_density(median_force, element_size) / ICE_DENSITY
+    solid_share = density_of_form(DENSITY, median_force, element_size) / ICE_DENSITY
     area: FloatArray = 4.0 * (1.0 - solid_share) / (ICE_DENSITY * length)
     return area

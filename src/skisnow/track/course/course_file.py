@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast
@@ -273,19 +272,19 @@ def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, 
     changes of direction for 11 to 15 % of the metres of drop (901.2.4; of the whole course, start to finish). Slalom is
     not checked, because no citable text was available.
     """
-    return tuple(_departures_from_rules(course, drop)) if course.discipline == "giant-slalom" else ()
-
-
-def _departures_from_rules(course: Course, drop: float | None) -> Iterator[str]:
+    if course.discipline != "giant-slalom":
+        return ()
     low, high = _WIDTH
-    for gate in course.gates:
-        if gate.outer is not None and not low <= gate.width <= high:
-            yield f"gate {gate.name} is {gate.width:.2f} m wide; {_ARTICLE} asks for {low:g} to {high:g} m"
+    warnings = [
+        f"gate {gate.name} is {gate.width:.2f} m wide; {_ARTICLE} asks for {low:g} to {high:g} m"
+        for gate in course.gates
+        if gate.outer is not None and not low <= gate.width <= high
+    ]
     for before, gate in zip(course.gates, course.gates[1:], strict=False):
         poles = [np.array([pole for pole in (one.turning, one.outer) if pole is not None]) for one in (before, gate)]
         apart = float(np.linalg.norm(poles[0][:, None] - poles[1][None], axis=2).min())
         if apart < _LEAST_DISTANCE:
-            yield (
+            warnings.append(
                 f"gates {before.name} and {gate.name} are {apart:.2f} m apart; {_ARTICLE} asks for "
                 f"{_LEAST_DISTANCE:g} m or more between their nearest poles"
             )
@@ -293,7 +292,8 @@ def _departures_from_rules(course: Course, drop: float | None) -> Iterator[str]:
         least, most = (round(share * drop) for share in _TURNS_PER_DROP)
         turns = sum(one.side != other.side for one, other in zip(course.gates, course.gates[1:], strict=False))
         if not least <= turns <= most:
-            yield (
+            warnings.append(
                 f"the course changes its direction {turns} times over {drop:.0f} m of drop; {_ARTICLE} asks for "
                 f"{least} to {most}"
             )
+    return tuple(warnings)

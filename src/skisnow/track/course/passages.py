@@ -132,7 +132,7 @@ def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoin
 def _find_passage(
     gate: Gate, line: GateLine, after: float, middle: MovingPoint, parts: Mapping[str, MovingPoint]
 ) -> Passage:
-    crossings = middle.crossings(line.pole, line.along, line.across)
+    crossings = middle.crossings(line)
     near = [crossing for crossing in crossings if crossing.time > after and abs(crossing.aside) <= FARTHEST]
     tried = [crossing for crossing in near if crossing.forward]
     tried = [crossing for crossing in tried if crossing.time <= tried[0].time + CLIMB_BACK]
@@ -161,7 +161,7 @@ def _judge_crossing(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str
 
 def _lateral_position(line: GateLine, at: Crossing, part: MovingPoint) -> float:
     """Position (m) along the line at which a part crossed it at about that time; that of the middle if it did not."""
-    crossings = [crossing for crossing in part.crossings(line.pole, line.along, line.across) if crossing.forward]
+    crossings = [crossing for crossing in part.crossings(line) if crossing.forward]
     crossings = [crossing for crossing in crossings if abs(crossing.time - at.time) <= BESIDE]
     return min(crossings, key=lambda crossing: abs(crossing.time - at.time)).aside if crossings else at.aside
 
@@ -216,27 +216,22 @@ class MovingPoint:
         differences = np.gradient(self.place, self.time, axis=0, edge_order=order)
         self.velocity = differences if velocity is None else np.where(np.isfinite(velocity), velocity, differences)
 
-    def crossings(self, origin: FloatArray, along: FloatArray, across: FloatArray) -> list[Crossing]:
-        """Every crossing of the line through `origin` (2,) along `across`, in their order.
+    def crossings(self, line: GateLine) -> list[Crossing]:
+        """Every crossing of a gate's line, of any width, in their order; a point on the line counts as beyond it."""
+        beyond = (self.place - line.pole) @ line.along >= 0.0
+        return [self._crossing(int(i), line) for i in np.flatnonzero(np.diff(beyond.astype(np.int8)) != 0)]
 
-        `along` and `across` are unit vectors (2,), square to each other. A point on the line counts as beyond it.
-        """
-        beyond = (self.place - origin) @ along >= 0.0
-        return [
-            self._crossing(int(i), origin, along, across) for i in np.flatnonzero(np.diff(beyond.astype(np.int8)) != 0)
-        ]
-
-    def _crossing(self, i: int, origin: FloatArray, along: FloatArray, across: FloatArray) -> Crossing:
+    def _crossing(self, i: int, line: GateLine) -> Crossing:
         step = float(self.time[i + 1] - self.time[i])
-        first, last = (float((self.place[j] - origin) @ along) for j in (i, i + 1))
-        rates = (step * float(self.velocity[j] @ along) for j in (i, i + 1))
+        first, last = (float((self.place[j] - line.pole) @ line.along) for j in (i, i + 1))
+        rates = (step * float(self.velocity[j] @ line.along) for j in (i, i + 1))
         forward = last >= 0.0
         high = _reached(first, last, *rates)
         place, velocity = self._at(i, high)
         straight = first / (first - last)
         return Crossing(
             time=float(self.time[i]) + high * step,
-            aside=float((place - origin) @ across),
+            aside=float((place - line.pole) @ line.across),
             speed=float(np.linalg.norm(velocity)),
             forward=forward,
             doubt=abs(high - straight) * step,

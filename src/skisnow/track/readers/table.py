@@ -15,10 +15,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray
-from ..._support.messages import Message, joined
+from ..._support.messages import Message, count_message, joined
 from ..._support.spreadsheet_text import decimal_mark, number
 from .recording import FARTHEST, Recording, is_not_finite, track_error
-from .text import Cells, convert_serial_dates, moment, require_width, split_cells
+from .text import Cells, convert_serial_dates, moment, split_cells
 
 TIMES: Final = ("time_s", "time")
 LOCAL: Final = ("x_m", "y_m", "z_m")
@@ -103,7 +103,16 @@ class _Table:
         is_geodetic = _is_geodetic(cells.header, name, place)
         columns = _columns(cells.header, is_geodetic, name, place)
         width = len(cells.header)
-        require_width(cells, name)
+        for line, row in zip(cells.lines, cells.rows, strict=True):
+            if any(row[width:]):
+                allowed = count_message(
+                    "{count} cell, as in the header", "{count} cells, as in the header", count=width
+                )
+                action = Message(
+                    "A decimal comma in a file separated by commas looks like this; separate by semicolons."
+                )
+                beyond = next(filter(None, row[width:]))
+                raise track_error("too_many_cells", name, allowed, action, place=f"row {line}", value=beyond)
         blanks = [("",) * missing for missing in range(width, 0, -1)]
         rows = tuple(row + blanks[len(row)] if len(row) < width else row[:width] for row in cells.rows)
         places = [column.place for column in columns.values()]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.csv_text import UnreadableTextError, inspect_csv
-from ..._support.messages import Message, count_message
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import NoTextError, decoded
 from .recording import track_error
 
@@ -61,20 +61,6 @@ def split_cells(text: str, name: str) -> Cells:
     if not rows:
         raise track_error("empty_file", name, Message("a header and rows"), Message("The file is empty."))
     return Cells(rows[0], lines[0], tuple(lines[1:]), tuple(rows[1:]), csv_text.separator)
-
-
-def require_width(cells: Cells, name: str) -> None:
-    """Reject a row with more cells than the header, such as with decimal commas in a file separated by commas.
-
-    Raises FieldDataError: a row has more cells than the header.
-    """
-    width = len(cells.header)
-    for line, row in zip(cells.lines, cells.rows, strict=True):
-        if any(row[width:]):
-            allowed = count_message("{count} cell, as in the header", "{count} cells, as in the header", count=width)
-            action = Message("A decimal comma in a file separated by commas looks like this; separate by semicolons.")
-            value = next(filter(None, row[width:]))
-            raise track_error("too_many_cells", name, allowed, action, place=f"row {line}", value=value)
 
 
 def moment(cell: str) -> datetime | None:
