@@ -63,10 +63,6 @@ class _Optimum:
     state: FloatArray
     root: FloatArray
 
-    @property
-    def log_mass(self) -> float:
-        return self.value + float(np.linalg.slogdet(self.root)[1])
-
 
 class _Search:
     """Log posterior density of the place noise, turn rate and drift of one stretch, and its maximum."""
@@ -169,17 +165,20 @@ def _best_start(model: PathModel) -> tuple[_Search, tuple[int, FloatArray, Float
 
 def _points(search: _Search, optima: list[_Optimum | None]) -> list[WeightedParameters]:
     """Cubature points about each optimum that has weight."""
-    masses = [-np.inf if optimum is None else optimum.log_mass + LOG_PRIOR[n] for n, optimum in enumerate(optima)]
+    volumes = [0.0 if optimum is None else float(np.linalg.slogdet(optimum.root)[1]) for optimum in optima]
+    masses = [
+        -np.inf if optimum is None else optimum.value + volume + prior
+        for optimum, volume, prior in zip(optima, volumes, LOG_PRIOR, strict=True)
+    ]
     points = []
     for number, optimum in enumerate(optima):
         if optimum is None or masses[number] < max(masses) - _NEGLIGIBLE:
             continue
-        acceleration = float(ACCELERATIONS[number])
-        size = len(optimum.logs)
+        acceleration, size = float(ACCELERATIONS[number]), len(optimum.logs)
         for sign, axis in itertools.product((1.0, -1.0), range(size)):
             logs = optimum.logs + sign * np.sqrt(size) * optimum.root[:, axis]
             value, _ = search.value(logs, acceleration, optimum.state)
-            weight = value + 0.5 * size + float(np.linalg.slogdet(optimum.root)[1]) + LOG_PRIOR[number]
+            weight = value + 0.5 * size + volumes[number] + LOG_PRIOR[number]
             if np.isfinite(weight):
                 points.append(WeightedParameters(search.parameters(logs, acceleration), float(weight)))
     return points

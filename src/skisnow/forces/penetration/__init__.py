@@ -2,11 +2,10 @@
 
 from typing import Final
 
-from .elastic_points import ElasticPoint, MeanPressurePoint
 from .geometry_laws import AreaLaw, DepthLaw, ElementCountLaw, MeanPressureLaw
-from .hypoplastic_point import HypoplasticPoint, VolumeWithAnglePoint
 from .law import PenetrationLaw, PointLaw
 from .layered_point import LayeredPoint, ProfilePoint
+from .point_laws import ElasticPoint, HypoplasticPoint, MeanPressurePoint, VolumeWithAnglePoint
 from .volume_laws import BilinearLaw, VolumeLaw, VolumeWithAngleLaw
 
 LAWS: Final[tuple[type[PenetrationLaw], ...]] = (

@@ -128,9 +128,8 @@ def _geodetic_course(
     height = 0.0 if np.isnan(first.height) else first.height
     points = np.array([(waypoint.latitude_deg, waypoint.longitude_deg, height) for waypoint in waypoints])
     place = east_north_up(points, origin=GeodeticPoint(latitude, longitude, height))[:, :2]
-    bends = _bends(place)
-    sides, assumed = [], []
-    for waypoint, bend in zip(waypoints, bends, strict=True):
+    sides = []
+    for waypoint, bend in zip(waypoints, _bends(place), strict=True):
         side = waypoint.side or bend
         if side is None:
             raise ParameterError(
@@ -138,20 +137,16 @@ def _geodetic_course(
                 "not determine it either. Write left or right into its type"
             ).tag("no_side", row=waypoint.row, name=waypoint.name)
         sides.append(side)
-        if waypoint.side is None:
-            assumed.append(waypoint.name)
+    assumed = [waypoint.name for waypoint in waypoints if waypoint.side is None]
     gates = tuple(
         Gate(name=waypoint.name, turning=(float(x), float(y)), side=side)
         for waypoint, (x, y), side in zip(waypoints, place, sides, strict=True)
     )
-    warnings = (
-        (f"the side of {len(assumed)} gates was taken from the bends of the course: {', '.join(assumed)}",)
-        if assumed
-        else ()
-    )
+    warning = f"the side of {len(assumed)} gates was taken from the bends of the course: {', '.join(assumed)}"
     return Course(
-        gates=gates, axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude, warnings=warnings, **options
-    )
+        gates=gates, axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude,
+        warnings=(warning,) if assumed else (), **options,
+    )  # fmt: skip
 
 
 def _bends(place: FloatArray) -> list[Side | None]:

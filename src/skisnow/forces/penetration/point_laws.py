@@ -1,9 +1,9 @@
-"""Hypoplastic snow at one place: it keeps most of the groove; also with a stress that depends on the edge angle."""
+"""Laws for one place on the snow: elastic, hypoplastic, which keeps most of the groove, and by a mean pressure."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -11,8 +11,61 @@ import numpy.typing as npt
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ...snow.published.moessner_2013 import ANGLE_TERM
-from ..parameter_checks import ABOVE_ZERO, SNOW_HARDNESS
-from .law import PointLaw
+from ..parameter_checks import ABOVE_ZERO, NOT_BELOW_ZERO, PRESSURE_OFFSET, PRESSURE_SLOPE, SNOW_HARDNESS
+from .law import DeepeningPoint, PointLaw
+
+
+@dataclass(frozen=True, slots=True)
+class ElasticPoint(PointLaw):
+    """p = H_V ε for ε > 0, else 0 (Eqn 12), loading and unloading on the same line.
+
+    Attributes
+    ----------
+    snow_hardness
+        H_V (N/m³).
+
+    See Also
+    --------
+    skisnow.forces.penetration.HypoplasticPoint
+
+    Notes
+    -----
+    Range: that of `VolumeLaw`. Source: Mössner and others (2013), who measured only loading. No groove is left and no
+    energy is lost: snow does not behave so, but most simulations of skiing do.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
+
+    Examples
+    --------
+    0.2 N/mm³, 5 mm deep: 1 N/mm², and ½·0.2·5² = 2.5 N/mm = 2,500 J/m².
+
+    >>> snow = ElasticPoint(snow_hardness=0.2e9)
+    >>> float(snow.stress(0.005, 0.008)), float(snow.stored_energy(0.005, 0.008))
+    (1000000.0, 2500.0)
+    """
+
+    snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
+
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stress`; the deepest depth does not matter."""
+        depth, _ = np.broadcast_arrays(np.asarray(depth, float), np.asarray(deepest, float))
+        result: FloatArray = self.snow_hardness * np.maximum(depth, 0.0)
+        return result
+
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.residual_depth`: 0."""
+        return np.zeros(np.shape(deepest))
+
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stored_energy`: ½ H_V ε²."""
+        return self.stress(depth, deepest) ** 2 / (2.0 * self.snow_hardness)
+
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.lost_energy`: 0."""
+        return np.zeros(np.shape(deepest))
 
 
 class _Hypoplastic(PointLaw):
@@ -160,3 +213,75 @@ class VolumeWithAnglePoint(_Hypoplastic):
         """See `PointLaw.stress_and_energy`."""
         b0, b1 = ANGLE_TERM
         return (1.0 + b1 / b0 * edge_angle) * PointLaw.stress_and_energy(self, depth, deepest, edge_angle)
+
+
+RAMP_DEPTH: Final = 0.5e-3
+"""Depth (m) over which B comes in (modelling assumption: not measured; the law of the paper, all of it at once, is
+its limit 0)."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeanPressurePoint(DeepeningPoint):
+    """p = 2 A ε + B min(1, ε/ε_B), of a force along the base's normal; unloading along a steeper line.
+
+    * Virgin loading, ε ≥ ε_max: p = q(ε) = 2 A ε + B min(1, ε/ε_B), and ε_max becomes ε.
+    * Below, ε < ε_max: p = max(0, q(ε_max) - k_u (ε_max - ε)), k_u = unloading_ratio · (2 A + B/ε_B).
+
+    The force on a wedge of depth e is the sum of q over its width: the mean pressure times area, (A e + B) e L/tan ϑ
+    along the snow normal, is the integral of 2 A ε + B. Its part along the surface, tan ϑ times as much, is the maximum
+    side force of an edge: the law needs no shear strength (S_f = 0).
+
+    Attributes
+    ----------
+    pressure_slope, pressure_offset
+        A (N/m³), > 0; B (N/m²), ≥ 0: as `MeanPressureLaw`'s.
+    unloading_ratio
+        Steepness of unloading over the steepest of loading, ≥ 1 and finite. Not published, so it has no default.
+    ramp_depth
+        ε_B (m), > 0: at the surface itself the law would jump to B.
+
+    See Also
+    --------
+    skisnow.forces.penetration.MeanPressureLaw
+    skisnow.forces.penetration.HypoplasticPoint
+
+    Notes
+    -----
+    Range, source: as `MeanPressureLaw`; ramp and unloading are ours. On a wedge the ramp takes B ε_B/(2 e) off the mean
+    pressure. That the part across is a most and no force that always acts is ours too: a base that is pushed along the
+    surface at its own depth does no work on the snow, and would be given energy without end.
+
+    References
+    ----------
+    * Federolf and others (2006), "Deformation of snow during a carved ski turn", Cold Reg. Sci. Technol. 46, 69-77,
+      doi 10.1016/j.coldregions.2006.06.006.
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+
+    Examples
+    --------
+    A race piste, A = 0.034 N/mm³ and B = 0.35 N/mm²: 10 mm deep 0.68 + 0.35 N/mm².
+
+    >>> snow = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
+    >>> [round(float(p)) for p in snow.stress([0.00025, 0.0005, 0.010], 0.0)]
+    [192000, 384000, 1030000]
+    """
+
+    pressure_slope: Annotated[float, ABOVE_ZERO, PRESSURE_SLOPE]
+    pressure_offset: Annotated[float, NOT_BELOW_ZERO, PRESSURE_OFFSET]
+    unloading_ratio: float
+    ramp_depth: Annotated[float, ABOVE_ZERO] = RAMP_DEPTH
+    along_base_normal: ClassVar[bool] = True
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """See `PointLaw.bends`: where the ramp ends."""
+        return (self.ramp_depth,)
+
+    def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        deepest = np.asarray(deepest, float)
+        ramp = np.minimum(deepest, self.ramp_depth)
+        loaded = 2.0 * self.pressure_slope * deepest + self.pressure_offset * np.minimum(1.0, deepest / self.ramp_depth)
+        by_offset = self.pressure_offset * (deepest - ramp + 0.5 * ramp**2 / self.ramp_depth)
+        unloading = self.unloading_ratio * (2.0 * self.pressure_slope + self.pressure_offset / self.ramp_depth)
+        return loaded, self.pressure_slope * deepest**2 + by_offset, np.asarray(unloading)
