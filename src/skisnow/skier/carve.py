@@ -176,45 +176,44 @@ class CarveControl:
         self._growth = omega**2 * (aside - pressure - balanced)
         return Command((edge, edge), aside=self._growth, pressure=pressure, edge_rate=EDGE_RATE)
 
-    @property
-    def _steepest(self) -> float:
-        """Acceleration (m/s²) in balance at the largest lean."""
-        return self.gravity.normal * math.tan(self.skier.greatest_lean)
+    def _underway(self, now: float, seen: Seen) -> tuple[Underway, float, float]:
+        """State now, and accelerations (m/s²) of a carve in balance and with the largest edge angle.
 
-    def _most(self, speed: float) -> float:
-        """Acceleration of a carve in balance (m/s²)."""
-        return min(self.edges.carving_acceleration(speed), self._steepest)
-
-    def _limit(self, speed: float) -> float:
-        """Acceleration (m/s²) of a carve with the largest edge angle, limited by that at the largest lean."""
-        return min(speed**2 / (self.edges.radius * math.cos(self.edges.steepest(speed))), self._steepest)
+        Both are limited by the one in balance at the largest lean.
+        """
+        speed, edges = seen.feet_speed, self.edges
+        steepest = self.gravity.normal * math.tan(self.skier.greatest_lean)
+        limit = speed**2 / (edges.radius * math.cos(edges.steepest(speed)))
+        at = Underway(now, *seen.feet, seen.feet_course, speed, self._acceleration)
+        return at, min(edges.carving_acceleration(speed), steepest), min(limit, steepest)
 
     def _foreseen(self, now: float, seen: Seen, omega: float) -> tuple[float, float]:
         """Target of the capture point, and the place of the centre of mass in balance now (m)."""
-        speed = max(seen.feet_speed, SLOWEST)
-        lag, fading = self._lag(seen.feet_speed), self.skier.leg_gain * omega
-        most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
-        at = Underway(now, *seen.feet, seen.feet_course, seen.feet_speed, acceleration)
-        limit, load, total, before, first = self._limit(seen.feet_speed), self._weight, 0.0, 1.0, None
+        actual, (turn, rate), acceleration = seen.feet_speed, self._turn, self._acceleration
+        speed, lag, fading = max(actual, SLOWEST), self._lag(actual), self.skier.leg_gain * omega
+        at, most, limit = self._underway(now, seen)
+        load, total, before, first = self._weight, 0.0, 1.0, None
         steer, held, asked, share = self.steering.acceleration, self.edges.held, self._asked, 1.0 / max(most, 1e-3)
+        sin, cos, exp = math.sin, math.cos, math.exp
         down, scale, holds = self.gravity.down, self.body.height / self.gravity.normal, self._holds * self.edges.gravity
         for middle, end, step, (a, b, c, d) in _FORESIGHT:
             at.time = now + middle
-            planned = share * max(-limit, min(limit, steer(at, most)))
+            planned = steer(at, most)
+            planned = share * (limit if planned > limit else -limit if planned < -limit else planned)
             turn, rate = planned + a * (turn - planned) + b * rate, c * (turn - planned) + d * rate
-            slope, wanted = down * math.sin(at.heading), most * turn + asked * math.exp(-fading * middle)
+            heading = at.heading
+            slope, wanted = down * sin(heading), most * turn + asked * exp(-fading * middle)
             if abs(wanted + slope) > holds:
                 wanted = held(wanted, slope, load)
             acceleration += (wanted - acceleration) * step / (lag + step)
             balanced = scale * (acceleration + slope)
             first = balanced if first is None else first
-            weight = math.exp(-omega * end)
+            weight = exp(-omega * end)
             total, before = total + (before - weight) * balanced, weight
-            way, bend = step * at.speed, 0.5 * acceleration / speed * step
-            at.x += way * math.cos(at.heading + bend)
-            at.y += way * math.sin(at.heading + bend)
-            at.heading += 2.0 * bend
-            at.acceleration = acceleration
+            way, bend = step * actual, 0.5 * acceleration / speed * step
+            at.x += way * cos(heading + bend)
+            at.y += way * sin(heading + bend)
+            at.heading, at.acceleration = heading + 2.0 * bend, acceleration
         return total / (1.0 - before), first or 0.0
 
     def _learn(self, seen: Seen, planned: float, edge: float, omega: float, dt: float) -> None:
@@ -228,10 +227,8 @@ class CarveControl:
 
     def _edge(self, now: float, seen: Seen, error: float, dt: float) -> float:
         """Edge angle (rad), by a filter of the planned turn."""
-        (turn, rate), speed = self._turn, seen.feet_speed
-        most, gravity = self._most(speed), self.gravity.normal
-        at = Underway(now, *seen.feet, seen.feet_course, speed, self._acceleration)
-        limit = self._limit(speed)
+        (turn, rate), speed, gravity = self._turn, seen.feet_speed, self.gravity.normal
+        at, most, limit = self._underway(now, seen)
         planned = max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
         rate += dt * (EDGE_CHANGE**2 * (planned - turn) - 2.0 * EDGE_CHANGE * rate)
         self._turn = [turn + rate * dt, rate]

@@ -132,9 +132,10 @@ class HalfWaves:
     def at(self, x: float) -> tuple[float, float, float]:
         """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""
         start, end, aside, rate, half = self._waves[max(bisect.bisect_left(self._starts, x) - 1, 0)]
-        phase = min(math.pi, max(0.0, rate * (x - start)))
+        within = start <= x <= end
+        phase = rate * (x - start) if within else 0.0 if x < start else math.pi
         cosine = math.cos(phase)
-        bend = half * rate**2 * cosine if start <= x <= end else 0.0
+        bend = half * rate**2 * cosine if within else 0.0
         return aside + half * (1.0 - cosine), half * rate * math.sin(phase), bend
 
 

@@ -185,8 +185,7 @@ class Posture:
         for side, (lift, lift_rate, axes, turning) in zip((0.5, -0.5), skis, strict=True):
             arm = combined((-ahead, side * stance - aside, lift - height), body)
             moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
-            numbers = plus(arm, origin), plus(moving, cross(spin, arm)), plus(spin, turning)
-            place, velocity, whole = map(np.array, numbers)
+            place, velocity, whole = np.array((plus(arm, origin), plus(moving, cross(spin, arm)), plus(spin, turning)))
             poses.append(BootPose.unchecked(place, axes, velocity, whole))
         return poses
 

@@ -144,7 +144,8 @@ def seen_at(
     place, foot = (plus(position, combined(each, surface)) for each in (centre, middle))
     heading, course = (math.atan2(each[1], each[0]) for each in (direction, step))
     cosine, sine = math.cos(heading), math.sin(heading)
-    half = minus(boots[0, 0].tolist(), middle)  # from the middle to the left boot
+    left_boot, right_boot = boots.tolist()
+    half = minus(left_boot[0], middle)  # from the middle to the left boot
     both = plus(cross(half, minus(force, force_right)), plus(twist, twist_right))
     (ahead, aside), (ahead_rate, aside_rate), (along, across), (rolling, tilting), (body_ahead, body_left) = (
         (cosine * each[0] + sine * each[1], cosine * each[1] - sine * each[0])
@@ -178,17 +179,12 @@ def seen_at(
         body_heading=heading + math.atan2((height * body_left - aside * forward[2]) / length, body_ahead),
         body_rate=spin[2],
         yaw_inertia=yaw_inertia,
-        edge=(_edge(*boots[0, 2:4, 2].tolist()), _edge(*boots[1, 2:4, 2].tolist())),
+        edge=(math.atan2(-left_boot[2][2], left_boot[3][2]), math.atan2(-right_boot[2][2], right_boot[3][2])),
         bears=bears,
         lifted=bears and min(left, right) < LIFTED * load,
         pitching=height * along - load * ahead - tilting,
         pitch=math.asin(max(-1.0, min(1.0, direction[2]))),
     )
-
-
-def _edge(left: float, off: float) -> float:
-    """Edge angle (rad) of a boot by how far its axes to the left and off the base point off the snow."""
-    return math.atan2(-left, off)
 
 
 LEVEL: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
