@@ -121,13 +121,12 @@ class Descent:
 
     def _values_of_lines(self, z: FloatArray) -> FloatArray:
         search, (matrix, lowest) = self.search, self.search.linear
-        deviations = [search.deviations(goal, z) for goal in search.targets]
-        return np.concatenate([*deviations, *(search.room(goal, z) for goal in search.limits), matrix @ z - lowest])
+        values = [search.values(goal, z) for goal in (*search.targets, *search.limits)]
+        return np.concatenate([*values, matrix @ z - lowest])
 
     def _linearise(self, z: FloatArray) -> _Lines:
         search = self.search
-        growths = [search.deviation_growth(goal, z) for goal in search.targets]
-        growths += [search.room_growth(goal, z) for goal in search.limits]
+        growths = [search.growth(goal, z) for goal in (*search.targets, *search.limits)]
         return _Lines(z, self._values_of_lines(z), np.concatenate([*growths, search.linear[0]]))
 
     def _merit(self, *values: FloatArray) -> float:

@@ -196,34 +196,24 @@ class Search:
         """Number of variables."""
         return len(self.evaluator.task.variables)
 
-    def deviations(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """Relative deviations from a target, times the root of the goal's weight."""
-        return np.asarray(np.sqrt(goal.weight) * goal.deviations(self.evaluator.goal_values(goal, z)))
+    def values(self, goal: Goal, z: FloatArray) -> FloatArray:
+        """Relative deviations from a target, times the root of its weight; distances to a limit, below 0: violated."""
+        return np.asarray(goal.merit_factor * goal.deviations(self.evaluator.goal_values(goal, z)))
 
-    def deviation_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
+    def growth(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Growth of these, shape (values, variables)."""
-        return np.asarray(np.sqrt(goal.weight) * self.evaluator.goal_growth(goal, z) / goal.scale)
-
-    def room(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """Relative distance to a limit; negative where it is violated."""
-        side = -1.0 if goal.at_most is not None else 1.0
-        return np.asarray(side * goal.deviations(self.evaluator.goal_values(goal, z)))
-
-    def room_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """Growth of that, shape (values, variables)."""
-        side = -1.0 if goal.at_most is not None else 1.0
-        return np.asarray(side * self.evaluator.goal_growth(goal, z) / goal.scale)
+        return np.asarray(goal.merit_factor * self.evaluator.goal_growth(goal, z) / goal.scale)
 
     def objective(self, z: FloatArray) -> float:
         """Sum over the targets of the mean square of their deviations, or of the square of the worst one, in %²."""
-        squares = [self.deviations(goal, z) ** 2 for goal in self.targets]
+        squares = [self.values(goal, z) ** 2 for goal in self.targets]
         over = zip(self.targets, squares, strict=True)
         return PERCENT * sum(float(np.max(each) if goal.over == "worst" else np.mean(each)) for goal, each in over)
 
     def worst_deviation(self, z: FloatArray) -> float:
         """Largest relative deviation from a target; 0 without targets."""
         try:
-            return max((float(np.max(np.abs(self.deviations(goal, z)))) for goal in self.targets), default=0.0)
+            return max((float(np.max(np.abs(self.values(goal, z)))) for goal in self.targets), default=0.0)
         except SolverError:
             return _NO_SKI
 
@@ -231,7 +221,7 @@ class Search:
         """Largest breach of limits and linear constraints, relative."""
         matrix, lowest = self.linear
         try:
-            rooms = [float(np.min(self.room(goal, z))) for goal in self.limits]
+            rooms = [float(np.min(self.values(goal, z))) for goal in self.limits]
         except SolverError:
             return _NO_SKI
         return max([0.0, *(-room for room in rooms), *(lowest - matrix @ z).tolist()])

@@ -222,7 +222,7 @@ def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
     out = []
     for goal in search.evaluator.task.goals:
         values = search.evaluator.goal_values(goal, z)
-        misses = np.abs(goal.deviations(values)) if goal.target is not None else -search.room(goal, z)
+        misses = np.abs(goal.deviations(values)) if goal.target is not None else -search.values(goal, z)
         missed, values = float(np.max(misses)), values[[np.argmax(misses)]] if goal.places_m else values
         if missed > _MISSED:
             out.append(

@@ -20,7 +20,7 @@ from ..carving.outputs import FORCE_ALONG_EDGE, OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
 from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
 from ..ski import Ski
-from ..ski.editing import changed_keys, shape_parameters
+from ..ski.editing import changed_keys, key_value, shape_parameters
 from ..ski.file_keys import LISTS
 from ..ski.ski_file import Sources
 
@@ -78,6 +78,11 @@ class Goal:
     def scale(self) -> float:
         """The value against which deviations are relative: the target or limit, the largest of a curve."""
         return self.wanted * float(np.max(np.abs(self.factors)))
+
+    @property
+    def merit_factor(self) -> float:
+        """Factor of deviations: the root of a target's weight; 1 or -1 for a limit, so that more is better."""
+        return float(np.sqrt(self.weight)) if self.target is not None else 1.0 if self.at_most is None else -1.0
 
     def deviations(self, values: FloatArray) -> FloatArray:
         """Relative deviations of values, for each condition those at the places, from the target or limit."""
@@ -327,10 +332,7 @@ def start_value(keys: Mapping[str, Any], name: str) -> float:
     """Value of a variable at the ski to begin with."""
     if name in COMBINED:
         return 0.0 if name == "sidecut_mm" else 1.0
-    row = name.partition("[")
-    if row[1]:
-        return float(keys[row[0]][int(row[2].rstrip("]")) - 1])
-    return float(keys.get(name, 0.0))
+    return key_value(keys, name)
 
 
 def designed_keys(keys: Mapping[str, Any], variables: Sequence[Variable], values: Sequence[float]) -> dict[str, Any]:
