@@ -22,7 +22,7 @@ from skisnow.racing.line import NUMBERS, first_gates, with_numbers
 from skisnow.racing.point import LinePoint, turns_in
 from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
-from skisnow.racing.windows import Search, Windows, WindowSettings
+from skisnow.racing.windows import Search, Windows
 from skisnow.skier.plan import HalfWaves
 from tests.present import present
 
@@ -236,10 +236,11 @@ class Searched:
 
     def best(self, begun: RacingLine, search: Search, window: int, ahead: int, evaluations: int = 40) -> Evaluated:
         pytest.importorskip("cmaes")
-        how = WindowSettings(search, evaluations, None, 0.15, 0.0, 1, self.told.append)
         with Pool(self.race, 1, advice="") as pool:
             made = Evaluations(pool, KeptRows(), self.done)
-            return Windows(made, how, window, 2, ahead, 3).search_line(begun)
+            return Windows(
+                made, search, evaluations, None, 0.15, 0.0, 1, self.told.append, window, 2, ahead, 3
+            ).search_line(begun)
 
     @property
     def order(self) -> list[str]:

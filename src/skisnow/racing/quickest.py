@@ -19,7 +19,7 @@ from .line import RacingLine, course_of, first_gates, follower_line, skier_of
 from .point import Racer, RacerModel, score_in, turns_in
 from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, require_cmaes
-from .windows import RANGES, Progress, Search, Windows, WindowSettings
+from .windows import RANGES, Progress, Search, Windows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
@@ -185,9 +185,10 @@ def quickest_line(
     try:
         with Pool(racer, worker_count(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, rows, [])
-            how = WindowSettings(search, evaluations, population, spread, settled, seed, tell)
             kinds = len(RANGES) - (model == "point" or not skier_of(scenario).brakes_to)
-            searched = Windows(made, how, window, step, ahead, kinds).search_line(begun)
+            searched = Windows(
+                made, search, evaluations, population, spread, settled, seed, tell, window, step, ahead, kinds
+            ).search_line(begun)
     finally:
         rows.close()
     return QuickestLine(

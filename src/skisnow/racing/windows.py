@@ -26,9 +26,15 @@ _LOW: Final = np.array([low for low, _ in RANGES.values()])
 
 
 @dataclass(frozen=True, slots=True)
-class WindowSettings:
-    """Settings of the search in one window: the arguments of `quickest_line`."""
+class Windows:
+    """Search over a course, window by window.
 
+    search, evaluations, population, spread, settled, seed, window, step, ahead: arguments of `quickest_line`.
+    tell: called with a line of text now and then.
+    kinds: numbers of each turn that are searched, the first ones of `RANGES`.
+    """
+
+    made: Evaluations
     search: Search
     evaluations: int
     population: int | None
@@ -36,19 +42,6 @@ class WindowSettings:
     settled: float
     seed: int
     tell: Progress
-
-
-@dataclass(frozen=True, slots=True)
-class Windows:
-    """Search over a course, window by window.
-
-    how: each window is searched.
-    window, step, ahead: see `quickest_line`.
-    kinds: numbers of each turn that are searched, the first ones of `RANGES`.
-    """
-
-    made: Evaluations
-    how: WindowSettings
     window: int
     step: int
     ahead: int
@@ -81,41 +74,40 @@ class Windows:
         """Best line of a search with equal turns over the whole course; the start itself if its turns differ."""
         batches = self._make_batches(begun, 0, len(begun.turns), len(begun.turns))
         search, place = self._surrogate(batches, 0), self._place(begun, 0, len(begun.turns))
-        if self.how.search == "surrogate" and search.starts_with_equal_turns(place):
-            return search.minimise_equal_turns(place, self.how.evaluations)
+        if self.search == "surrogate" and search.starts_with_equal_turns(place):
+            return search.minimise_equal_turns(place, self.evaluations)
         batches.evaluate([place])
         return batches.least
 
     def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
         """Minimum over the turns from one gate to before another; the race ends at `end`."""
         batches, place = self._make_batches(line, first, last, end), self._place(line, first, last)
-        how = self.how
-        if how.search == "cma" or how.evaluations == 1:
+        if self.search == "cma" or self.evaluations == 1:
             return minimise(
-                batches, place, count=how.evaluations, population=how.population, spread=how.spread,
-                seed=(how.seed, first), settled=how.settled,
+                batches, place, count=self.evaluations, population=self.population, spread=self.spread,
+                seed=(self.seed, first), settled=self.settled,
             )  # fmt: skip
         return self._surrogate(batches, first).least(place, alike=self.window == len(line.turns))
 
     def _surrogate(self, batches: Batches, first: int) -> SurrogateSearch:
         """Search with a surrogate of the turns from gate ``first``, whose number also varies the seed."""
-        how = self.how
         return SurrogateSearch(
-            batches=batches, count=how.evaluations, kinds=self.kinds, spread=how.spread, seed=(how.seed, first),
-            settled=how.settled,
+            batches=batches, count=self.evaluations, kinds=self.kinds, spread=self.spread, seed=(self.seed, first),
+            settled=self.settled,
         )  # fmt: skip
 
     def _make_batches(self, line: RacingLine, first: int, last: int, end: int) -> Batches:
-        part, how = first_gates(line, end), self.how
+        part = first_gates(line, end)
 
         def point_of(place: FloatArray) -> LinePoint:
             """Racing line of a place (n,) of the search, each number from 0 to 1."""
-            numbers = (_LOW[: self.kinds] + place.reshape(-1, self.kinds) * _WIDTH[: self.kinds]).tolist()
+            shares = np.clip(place, 0.0, 1.0).reshape(-1, self.kinds)  # rounding
+            numbers = (_LOW[: self.kinds] + shares * _WIDTH[: self.kinds]).tolist()
             return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
 
         def told(done: int, least: float) -> None:
             best = f"best {least:.3f} s" if least < NOT_PASSED else "no line through all gates yet"
-            how.tell(f"gates {first + 1} to {last}: {done} of {how.evaluations} evaluations, {best}")
+            self.tell(f"gates {first + 1} to {last}: {done} of {self.evaluations} evaluations, {best}")
 
         return Batches(evaluations=self.made, point_of=point_of, told=told, first=len(self.made.done))
 
