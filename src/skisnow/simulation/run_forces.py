@@ -17,7 +17,7 @@ from ..scenario.terrain import down_and_left, normals_of
 if TYPE_CHECKING:
     from ..ski import Ski
     from .moving_boots import BootHistory
-    from .run import Run
+    from .run import Run, SkiHistory
 
 
 LEAST_LOAD: Final = 50.0
@@ -133,62 +133,46 @@ _LEAST_DEPTH = 1e-9
 """Depth (m) at which a shear law is evaluated where the edge is above the snow and carries no shear."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AlongEdge:
-    """Histories along both skis, (n, 2, m), from which their total force follows.
-
-    station: positions along the ski, tip to tail, positive before the boot (m), (m,).
-    depth, force, shear: edge depth (m); force along the snow's normal and shear per length (N/m).
-    bending, twist: deflection of the base (m), growth of the edge angle (rad).
-    push: forces on each ski along the edge, forward positive: friction and compaction resistance; of friction across
-        the edge, to the left; of friction off the surface (N), (n, 2, 3).
-    """
-
-    station: FloatArray
-    depth: FloatArray
-    force: FloatArray
-    shear: FloatArray
-    bending: FloatArray
-    twist: FloatArray
-    push: FloatArray
-
-
-def snow_forces(along: AlongEdge, boots: BootHistory, *, normal: FloatArray, ski: Ski) -> FloatArray:
+def snow_forces(
+    skis: SkiHistory, pushes: FloatArray, boots: BootHistory, *, normal: FloatArray, ski: Ski
+) -> FloatArray:
     """Total force of the snow on each ski in the slope's axes (N), (n, 2, 3).
 
+    pushes: forces on each ski along the edge, forward positive: friction and compaction resistance; of friction across
+        the edge, to the left; of friction off the surface (N), (n, 2, 3).
     normal: unit normal of the snow at each boot, (n, 2, 3).
 
     At each station the shear is perpendicular to the edge line of the bent ski; the push is along it, and across it as
     the load is. Both are in the snow's surface, but for the friction of a tilted base across the ski. The three parts
     are summed over the stations with the lengths of the nodes.
     """
-    forward, left = _edge_direction(along, boots, normal, ski)
-    length = node_lengths(along.station)
-    sheared, loaded = along.shear * length, along.force * length
-    push = along.push / np.maximum(loaded.sum(axis=2), 1e-9)[..., None]
+    forward, left = _edge_direction(skis, boots, normal, ski)
+    length = node_lengths(skis.station)
+    sheared, loaded = skis.shear_per_length * length, skis.force_per_length * length
+    push = pushes / np.maximum(loaded.sum(axis=2), 1e-9)[..., None]
     sheared = sheared + push[..., 1, None] * loaded
     ahead = (push[..., 0, None] * forward * loaded - left * sheared).sum(axis=2)
     aside = (push[..., 0, None] * left * loaded + forward * sheared).sum(axis=2)
     axes = _surface_axes(boots, normal)
-    parts = zip((loaded.sum(axis=2) + along.push[..., 2], ahead, aside), (normal, *axes), strict=True)
+    parts = zip((loaded.sum(axis=2) + pushes[..., 2], ahead, aside), (normal, *axes), strict=True)
     return np.asarray(sum(size[..., None] * axis for size, axis in parts))
 
 
 def thrust_per_length(
-    along: AlongEdge, boots: BootHistory, *, normal: FloatArray, shear: ShearLaw | None
+    skis: SkiHistory, boots: BootHistory, *, normal: FloatArray, shear: ShearLaw | None
 ) -> FloatArray:
     """Force along the normal that comes with the shear, per length (N/m), (n, 2, m): in the law's proportion of both.
 
-    along, boots, normal: as in `snow_forces`.
+    skis, boots, normal: as in `snow_forces`.
     shear: law of the shear; None: a law without thrust.
     """
     if shear is None or type(shear).thrust_force is ShearLaw.thrust_force:
-        return np.zeros_like(along.shear)
+        return np.zeros_like(skis.shear_per_length)
     edge_angle = np.arctan2(-_dot(boots.axes[:, :, 1], normal), _dot(boots.axes[:, :, 2], normal))
-    angle = np.minimum(np.abs(edge_angle[..., None] + along.twist), np.pi / 2.0)
-    stress, thrust = shear.stress_and_thrust(np.maximum(along.depth, _LEAST_DEPTH).ravel(), angle.ravel())
+    angle = np.minimum(np.abs(edge_angle[..., None] + skis.twist), np.pi / 2.0)
+    stress, thrust = shear.stress_and_thrust(np.maximum(skis.edge_depth, _LEAST_DEPTH).ravel(), angle.ravel())
     share = np.divide(thrust, stress, out=np.zeros_like(stress), where=stress > 0.0)
-    return np.asarray(np.abs(along.shear) * share.reshape(angle.shape))
+    return np.asarray(np.abs(skis.shear_per_length) * share.reshape(angle.shape))
 
 
 def node_lengths(station: FloatArray) -> FloatArray:
@@ -209,12 +193,12 @@ def _surface_axes(boots: BootHistory, normal: FloatArray) -> tuple[FloatArray, F
 
 
 def _edge_direction(
-    along: AlongEdge, boots: BootHistory, normal: FloatArray, ski: Ski
+    skis: SkiHistory, boots: BootHistory, normal: FloatArray, ski: Ski
 ) -> tuple[FloatArray, FloatArray]:
     """Components along the ski and to its left of the edge's unit tangent in the surface, (n, 2, m) each."""
-    station = along.station
+    station = skis.station
     base = ski.at(np.clip(station, float(ski.station[-1]), float(ski.station[0])))
-    rise = np.gradient(along.bending + base.base_height, station, axis=2)
+    rise = np.gradient(skis.bending + base.base_height, station, axis=2)
     flare = 0.5 * np.gradient(base.width, station)
     lower = -np.sign(_dot(boots.axes[:, :, 1], normal))[..., None]
     forward, left = (

@@ -15,7 +15,7 @@ from ..dynamics.motion import MOMENT, moment_parts
 from ..scenario.terrain import down_and_left, heights_of, normals_of
 from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
-from .run_forces import AlongEdge, snow_forces, thrust_per_length
+from .run_forces import snow_forces, thrust_per_length
 from .run_setup import Setup
 
 GAINED_SHARE, GAINED = 0.05, 10.0
@@ -94,23 +94,12 @@ class Record:
         normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
         bent = at_nodes(parts["beam_dofs"], self.setup.dynamics.body.skis[0].unknown)
         along = np.moveaxis(parts["along"], 2, 0)
-        skis = dict(zip(_ALONG, (*along, bent[..., 0], bent[..., 2]), strict=True))
+        values = dict(zip(_ALONG, (*along, bent[..., 0], bent[..., 2]), strict=True))
         node, history = self.setup.node, self._boots(parts)
-        depth = _at_boot(node, skis["edge_depth"])
+        depth = _at_boot(node, values["edge_depth"])
         fixed = self.setup.drive is None
         track = self._tracks(place, attitude, depth) if fixed else self._moved_tracks(history, depth)
-        skis["force_per_length"], force = self._forces(
-            AlongEdge(
-                station=node,
-                depth=skis["edge_depth"],
-                force=skis["force_per_length"],
-                shear=skis["shear_per_length"],
-                bending=skis["bending"],
-                twist=skis["twist"],
-                push=parts["pushes"],
-            ),
-            history,
-        )
+        skis = SkiHistory(station=node, track=track, depth=depth, force=np.zeros_like(track), **values)
         return {
             "time": time,
             "place": place,
@@ -118,18 +107,18 @@ class Record:
             "velocity": velocity,
             "heading": _heading(attitude, normal),
             "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
-            "skis": SkiHistory(station=node, track=track, depth=depth, force=force, **skis),
+            "skis": self._with_forces(skis, parts["pushes"], history),
             "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST, *GIVEN))},
             "boots": history,
         }
 
-    def _forces(self, along: AlongEdge, boots: BootHistory) -> tuple[FloatArray, FloatArray]:
-        """Force per length along the snow's normal, thrust included, and total force of the snow on each ski."""
+    def _with_forces(self, skis: SkiHistory, pushes: FloatArray, boots: BootHistory) -> SkiHistory:
+        """The skis with the thrust in their force along the snow's normal, and with the total force of the snow."""
         scenario, (x, y) = self.setup.scenario, boots.place.reshape(-1, 3).T[:2]
         normal = np.broadcast_to(normals_of(scenario.slope, x, y), (x.size, 3)).reshape(boots.place.shape)
-        thrust = thrust_per_length(along, boots, normal=normal, shear=self.setup.snow.shear)
-        along = replace(along, force=along.force + thrust)
-        return along.force, snow_forces(along, boots, normal=normal, ski=scenario.flexing_ski)
+        thrust = thrust_per_length(skis, boots, normal=normal, shear=self.setup.snow.shear)
+        skis = replace(skis, force_per_length=skis.force_per_length + thrust)
+        return replace(skis, force=snow_forces(skis, pushes, boots, normal=normal, ski=scenario.flexing_ski))
 
     def _boots(self, parts: Mapping[str, FloatArray]) -> BootHistory:
         """The boots in space."""

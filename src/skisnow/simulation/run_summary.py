@@ -45,6 +45,7 @@ def summary_dict(
     verification: result of `verification_dict`, if the run was repeated.
     """
     checked = {} if verification is None else {"verification": dict(verification)}
+    gates, finite = run_gates(run), run.speed[np.isfinite(run.speed)]
     return {
         "schema_version": SCHEMA_VERSION,
         "outcome": run.outcome,
@@ -54,8 +55,11 @@ def summary_dict(
         "wall_s": json_number(run.wall_s),
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
-        **_moments_json(run),
-        **_gates_json(run),
+        "end": end_dict(run),
+        "greatest_speed_m_per_s": float(finite.max()) if finite.size else None,
+        "least_turn_radius_m": least_turn_radius(run),
+        **radii_dict(run),
+        **({"gates_passed": None, "gates_missed": [], "gate_times_s": []} if gates is None else gates_dict(gates)),
         "energies": energies_dict(run),
         "energy_balance_error": json_number(run.energy_balance_error),
         "numbers": {name: json_number(value) for name, value in run.numbers.items()},
@@ -111,23 +115,6 @@ def run_warnings(run: Run) -> tuple[str, ...]:
         f"the energy residual is {share}{run.energy_residual:.3g} J: where and how fast the run ends is less "
         "certain than its digits say. Take smaller steps or a smaller tolerance, and see how far the end moves",
     )
-
-
-def _gates_json(run: Run) -> dict[str, Any]:
-    result = run_gates(run)
-    if result is None:
-        return {"gates_passed": None, "gates_missed": [], "gate_times_s": []}
-    return gates_dict(result)
-
-
-def _moments_json(run: Run) -> dict[str, Any]:
-    finite = run.speed[np.isfinite(run.speed)]
-    return {
-        "end": end_dict(run),
-        "greatest_speed_m_per_s": float(finite.max()) if finite.size else None,
-        "least_turn_radius_m": least_turn_radius(run),
-        **radii_dict(run),
-    }
 
 
 def _provenance_json(files: Iterable[Path]) -> dict[str, Any]:
