@@ -144,14 +144,14 @@ def test_a_contact_needs_a_spacing_and_a_runner(spacing: float) -> None:
     [
         ({"rotation": [np.diag([1.0, 1.0, -1.0])]}, "not_a_rotation"),
         ({"rotation": [1.1 * np.eye(3)]}, coded("not_a_rotation", off=pytest.approx(0.21))),
-        ({"rotation": [np.eye(2)]}, coded("wrong_shape", name="rotation", shape="(1, 2, 2)")),
-        ({"position": [[0.0, 0.0, math.nan]]}, coded("not_a_number", name="position")),
+        ({"rotation": [np.eye(2)]}, coded("wrong_shape", name="SnowContact: rotation", shape="(1, 2, 2)")),
+        ({"position": [[0.0, 0.0, math.nan]]}, coded("not_a_number", name="SnowContact: position")),
         ({"dt": -1e-9}, coded("out_of_range", dt=-1e-09)),
         ({"dt": math.nan}, "out_of_range"),
-        ({"velocity": [np.zeros(5)]}, coded("wrong_shape", name="velocity")),
+        ({"velocity": [np.zeros(5)]}, coded("wrong_shape", name="SnowContact: velocity")),
         ({"beams": [np.zeros((2, 3))] * 2}, coded("wrong_shape", name="beam_dofs", n_beams=2, n_runners=1)),
-        ({"beams": [np.zeros((3, 3))]}, coded("wrong_shape", name="beam_dofs")),
-        ({"rates": [np.full((2, 3), math.inf)]}, coded("not_a_number", name="beam_rates")),
+        ({"beams": [np.zeros((3, 3))]}, coded("wrong_shape", name="SnowContact: beam_dofs")),
+        ({"rates": [np.full((2, 3), math.inf)]}, coded("not_a_number", name="SnowContact: beam_rates")),
     ],
 )
 def test_poses_that_cannot_be(changes: dict[str, Any], words: str | Coded) -> None:

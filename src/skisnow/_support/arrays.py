@@ -1,8 +1,9 @@
-"""Types of arrays, the bytes of an object for fingerprints, and numbers for names."""
+"""Types of arrays and checks of their shapes, the bytes of an object for fingerprints, and numbers for names."""
 
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import TypeAlias
@@ -10,9 +11,23 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .errors import ParameterError
+
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
+
+
+def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
+    """An array of finite numbers as compiled code takes it; it checks no shape itself."""
+    array = np.asarray(given, float, order="C")
+    if array.shape != shape:
+        raise ParameterError("{name} has shape {shape}; it must be {needed}").tag(
+            "wrong_shape", name=name, shape=str(array.shape), needed=str(shape)
+        )
+    if not all(map(math.isfinite, array.ravel().tolist())):  # for a few numbers faster than NumPy
+        raise ParameterError("{name} contains a number that is not finite").tag("not_a_number", name=name)
+    return array
 
 
 def content_bytes(thing: object) -> Iterator[bytes]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.messages import Message
-from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3, without_unit
 from .._support.user_files.json_text import json_number
 from ..forces.parameter_checks import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
 from ..ski import Ski
@@ -161,28 +161,22 @@ def equilibrium_dict(equilibrium: Equilibrium) -> dict[str, Any]:
     }
 
 
+SCALARS: Final = (
+    "side_force_N", "side_force_limit_N", "total_force_N", "grip_utilisation", "turn_radius_boot_m",
+    "turn_radius_boot_other_spread_m", "turn_radius_chord_m", "turn_radius_median_m", "contact_length_m",
+    "bearing_length_m", "afterbody_depth_ratio", "forebody_load_N", "afterbody_load_N", "boot_pitch_moment_Nm",
+    "residual_force_N", "residual_moment_Nm",
+)  # fmt: skip
+"""Numbers of an `Equilibrium`, which has them under these names without the unit."""
+
+
 def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
     """Outcome and single numbers under the keys of the contract."""
     return {
         "outcome": equilibrium.outcome,
         "remedy": equilibrium.remedy,
         "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
-        "side_force_N": json_number(equilibrium.side_force),
-        "side_force_limit_N": json_number(equilibrium.side_force_limit),
-        "total_force_N": json_number(equilibrium.total_force),
-        "grip_utilisation": json_number(equilibrium.grip_utilisation),
-        "turn_radius_boot_m": json_number(equilibrium.turn_radius_boot),
-        "turn_radius_boot_other_spread_m": json_number(equilibrium.turn_radius_boot_other_spread),
-        "turn_radius_chord_m": json_number(equilibrium.turn_radius_chord),
-        "turn_radius_median_m": json_number(equilibrium.turn_radius_median),
-        "contact_length_m": json_number(equilibrium.contact_length),
-        "bearing_length_m": json_number(equilibrium.bearing_length),
-        "afterbody_depth_ratio": json_number(equilibrium.afterbody_depth_ratio),
-        "forebody_load_N": json_number(equilibrium.forebody_load),
-        "afterbody_load_N": json_number(equilibrium.afterbody_load),
-        "boot_pitch_moment_Nm": json_number(equilibrium.boot_pitch_moment),
-        "residual_force_N": json_number(equilibrium.residual_force),
-        "residual_moment_Nm": json_number(equilibrium.residual_moment),
+        **{name: json_number(getattr(equilibrium, without_unit(name))) for name in SCALARS},
         "iterations": int(equilibrium.iterations),
     }
 

@@ -13,7 +13,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..compiled import core
 from ..contact.laws import PressureCallback, StrengthCallback
-from ..forces.penetration import PenetrationLaw, PointLaw
+from ..forces.penetration import PointLaw
 from ..forces.shear import ShearLaw
 from ..ski.ski import Ski
 
@@ -105,7 +105,10 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
     if shear is None and penetration is None:
         return None
     if penetration is not None and not isinstance(penetration, PointLaw):
-        raise ParameterError(_no_point_law(penetration)).tag("wrong_kind")
+        raise ParameterError(
+            "penetration is {law!r}; it must be a law of one place on the snow, not of a whole tool, such as "
+            "MeanPressurePoint(…) of skisnow.forces.penetration, or one of yours derived from PointLaw"
+        ).tag("wrong_kind", law=penetration)
     if shear is not None and not isinstance(shear, ShearLaw):
         raise ParameterError(
             "shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of skisnow.forces.shear, or "
@@ -127,20 +130,6 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
         None if strength is None else strength.share,
     )
     return SnowLaws(shear, penetration, tuple(law for law in (pressure, strength) if law is not None), compiled)
-
-
-def _no_point_law(law: object) -> Message:
-    if isinstance(law, PenetrationLaw):
-        return Message(
-            "penetration is {law!r}, a law for the force of a whole tool; it must be a law of one place on the snow, "
-            "such as MeanPressurePoint(…) of skisnow.forces.penetration, or one of yours derived from PointLaw",
-            law=law,
-        )
-    return Message(
-        "penetration is {law!r}, no law of a place; it must be a law of one place on the snow, such as "
-        "MeanPressurePoint(…) of skisnow.forces.penetration, or one of yours derived from PointLaw",
-        law=law,
-    )
 
 
 def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:

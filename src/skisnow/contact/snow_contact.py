@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, shaped
 from .._support.errors import ParameterError
 from .._support.units import Facts, Shown, field_facts
 from ..compiled import core
@@ -284,7 +284,10 @@ class SnowContact(Shown):
         rates: Beams,
     ) -> tuple[FloatArray, FloatArray, FloatArray, float, list[FloatArray] | None, list[FloatArray] | None]:
         k = len(self.runners)
-        where, axes = _checked_array("position", position, (k, 3)), _checked_array("rotation", rotation, (k, 3, 3))
+        where, axes = (
+            shaped("SnowContact: position", position, (k, 3)),
+            shaped("SnowContact: rotation", rotation, (k, 3, 3)),
+        )
         off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
         if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
             raise ParameterError(
@@ -292,7 +295,7 @@ class SnowContact(Shown):
             ).tag("not_a_rotation", off=off)
         if not (np.isfinite(dt) and dt >= 0.0):
             raise ParameterError("SnowContact: dt is {dt!r} s; it must be 0 or more").tag("out_of_range", dt=dt)
-        moves = np.zeros((k, 6)) if velocity is None else _checked_array("velocity", velocity, (k, 6))
+        moves = np.zeros((k, 6)) if velocity is None else shaped("SnowContact: velocity", velocity, (k, 6))
         return where, axes, moves, dt, self._checked_beams("beam_dofs", beams), self._checked_beams("beam_rates", rates)
 
     def _checked_beams(self, name: str, beams: Beams) -> list[FloatArray] | None:
@@ -303,18 +306,7 @@ class SnowContact(Shown):
                 "wrong_shape", name=name, n_beams=len(beams), n_runners=len(self.runners)
             )
         counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
-        return [_checked_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
-
-
-def _checked_array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
-    array = np.ascontiguousarray(given, float)
-    if array.shape != shape:
-        raise ParameterError("SnowContact: {name} has shape {shape}; it must be {needed}").tag(
-            "wrong_shape", name=name, shape=str(array.shape), needed=str(shape)
-        )
-    if not np.all(np.isfinite(array)):
-        raise ParameterError("SnowContact: {name} contains a number that is not finite").tag("not_a_number", name=name)
-    return array
+        return [shaped(f"SnowContact: {name}", beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
 
 
 def _wrench_in_words(wrench: FloatArray) -> str:

@@ -9,7 +9,7 @@ from typing import Final, get_args
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
+from .._support.messages import template
 from .._support.units import N_PER_MM2, N_PER_MM3, Facts, Shown, amount
 from ..compiled import core
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
@@ -128,12 +128,12 @@ class SnowField(Shown):
         return Facts(f"H_V {hardness}, S_f {stress}, k_u/H_V {amount(self.unloading_ratio)}, {laws}")
 
     def __post_init__(self) -> None:
-        _require("snow_hardness", _minimum(self.snow_hardness), above=0.0)
-        _require("failure_shear_stress", _minimum(self.failure_shear_stress), minimum=0.0)
-        _require("unloading_ratio", self.unloading_ratio, minimum=1.0)
+        _require("snow_hardness", _minimum(self.snow_hardness), 0.0, above=True)
+        _require("failure_shear_stress", _minimum(self.failure_shear_stress), 0.0)
+        _require("unloading_ratio", self.unloading_ratio, 1.0)
         self._reject_second_side_force()
         self._require_one_place()
-        _require("residual_ratio", self.residual_ratio, minimum=0.0)
+        _require("residual_ratio", self.residual_ratio, 0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError("SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1").tag(
                 "out_of_range", residual_ratio=self.residual_ratio
@@ -152,9 +152,9 @@ class SnowField(Shown):
             "retardation_time",
             "delayed_spacing",
         ):
-            _require(name, getattr(self, name), above=0.0)
+            _require(name, getattr(self, name), 0.0, above=True)
         for name in ("knot_area", "damping", "delayed_share"):
-            _require(name, getattr(self, name), minimum=0.0)
+            _require(name, getattr(self, name), 0.0)
         self._require_own_law_for_rate()
         object.__setattr__(self, "compiled", self._core_snow())
 
@@ -169,8 +169,8 @@ class SnowField(Shown):
             ).tag("contradiction", kind=type(law).__name__)
 
     def _require_one_place(self) -> None:
-        _require("strength_share", _minimum(self.strength_share), above=0.0)
-        _require("friction_share", _minimum(self.friction_share), above=0.0)
+        _require("strength_share", _minimum(self.strength_share), 0.0, above=True)
+        _require("friction_share", _minimum(self.friction_share), 0.0, above=True)
         shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
         if shared and isinstance(self.failure_shear_stress, Grid) and self.shear is None:
             raise ParameterError(
@@ -226,7 +226,7 @@ class SnowField(Shown):
             out.constant, out.linear = law.lubricated_friction, law.viscous_slope
             out.film, out.film_speed = law.dry_friction, law.film_speed
         elif not isinstance(law, FrictionLaw):
-            _require("friction", law, minimum=0.0)
+            _require("friction", law, 0.0)
             out.constant = law
         return out
 
@@ -282,25 +282,15 @@ def _maximum(value: float | Grid) -> float:
     return float(value.values.max()) if isinstance(value, Grid) else value
 
 
-def _require(name: str, value: float, *, minimum: float | None = None, above: float | None = None) -> None:
-    good = math.isfinite(value) and (minimum is None or value >= minimum) and (above is None or value > above)
-    if not good:
-        problem = (
-            Message(
-                "SnowField: {name} is {value!r}; it must be finite and above {limit:g}",
-                name=name,
-                value=value,
-                limit=above,
-            )
-            if minimum is None
-            else Message(
-                "SnowField: {name} is {value!r}; it must be finite and at least {limit:g}",
-                name=name,
-                value=value,
-                limit=minimum,
-            )
-        )
-        raise ParameterError(problem).tag("out_of_range")
+_LIMITS: Final = {
+    True: template("SnowField: {name} is {value!r}; it must be finite and above {limit:g}"),
+    False: template("SnowField: {name} is {value!r}; it must be finite and at least {limit:g}"),
+}
+
+
+def _require(name: str, value: float, limit: float, *, above: bool = False) -> None:
+    if not (math.isfinite(value) and (value > limit if above else value >= limit)):
+        raise ParameterError(_LIMITS[above]).tag("out_of_range", name=name, value=value, limit=limit)
 
 
 def _core_grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:

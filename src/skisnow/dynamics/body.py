@@ -9,23 +9,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, shaped
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, Facts, Shown, ShownFields, amount
 from ..compiled import core
 from ..geometry.vectors import angles_of, axes_of
-
-
-def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
-    """An array of finite numbers as compiled code takes it; it checks no shape itself."""
-    array = np.asarray(given, float, order="C")
-    if array.shape != shape:
-        raise ParameterError("{name} has shape {shape}; it must be {needed}").tag(
-            "wrong_shape", name=name, shape=str(array.shape), needed=str(shape)
-        )
-    if not all(map(math.isfinite, array.ravel().tolist())):  # for a few numbers faster than NumPy
-        raise ParameterError("{name} contains a number that is not finite").tag("not_a_number", name=name)
-    return array
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)

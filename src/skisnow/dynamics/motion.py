@@ -11,11 +11,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, shaped
 from .._support.errors import ParameterError
 from ..compiled import core
 from ..contact import ContactState, SnowContact
-from .body import Body, BootMotion, FlexibleSki, shaped
+from .body import Body, BootMotion, FlexibleSki
 
 STEPS_AT_ONCE: Final = 1000
 """Steps after which compiled code comes back, so that an interrupt is heard."""

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import require_choice
-from ..parameters import Allowed, Quantity, require_declared
+from ..parameters import Quantity, require_declared
 
 GeometryForm: TypeAlias = Literal["extended", "paper"]
 
@@ -93,9 +93,7 @@ class SkiPiece(Tool):
     10000.0
     """
 
-    length: Annotated[
-        float, Quantity("length_mm", "length along the edge"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
-    ]
+    length: Annotated[float, _length_quantity("length_mm", "length along the edge")]
     width: Annotated[float, _length_quantity("width_mm", "width of the base")]
 
     def __post_init__(self) -> None:
@@ -144,9 +142,7 @@ class PlainWedge(Tool):
     Kept to reproduce the paper. Beyond e = W sin ϑ it includes snow next to the tool; such readings are marked.
     """
 
-    length: Annotated[
-        float, Quantity("length_mm", "length along the edge"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
-    ]
+    length: Annotated[float, _length_quantity("length_mm", "length along the edge")]
     width: Annotated[float, _length_quantity("width_mm", "width of the base")]
 
     def __post_init__(self) -> None:
@@ -231,9 +227,7 @@ class LyingCylinder(Tool):
     """
 
     radius: Annotated[float, _length_quantity("radius_mm", "radius")]
-    width: Annotated[
-        float, Quantity("width_mm", "length along the axis"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
-    ]
+    width: Annotated[float, _length_quantity("width_mm", "length along the axis")]
 
     def __post_init__(self) -> None:
         require_declared(self)

@@ -132,14 +132,11 @@ def _contact(resolution: Resolution) -> Contact:
     snow = _snow(resolution).without_measured(unloading=ratio is not None, displacement=DISPLACEMENT in values)
     if ratio is None and snow.unloading_ratio is None:
         fields = {"name": UNLOADING, "meaning": SCENARIO_KEYS[UNLOADING].meaning}
-        problem = (
-            Message(
-                "{name} is missing: {meaning}; {source} has no measured value. Give it", **fields, source=snow.source
+        if resolution.snow:
+            raise ParameterError("{name} is missing: {meaning}; {source} has no measured value. Give it").tag(
+                "missing", **fields, source=snow.source
             )
-            if resolution.snow
-            else Message("{name} is missing: {meaning}. Give it", **fields)
-        )
-        raise ParameterError(problem).tag("missing")
+        raise ParameterError("{name} is missing: {meaning}. Give it").tag("missing", **fields)
     measured: dict[str, Any] = {"unloading_ratio": snow.unloading_ratio if ratio is None else ratio}
     if snow.shear_displacement is not None:
         measured["shear_displacement"] = snow.shear_displacement

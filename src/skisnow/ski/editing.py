@@ -24,12 +24,7 @@ from .ski import Ski
 from .ski_file import MADE_OF_KEYS, ski_of_keys
 from .table_file import StationTable
 
-EDITED_COLUMNS: Final = {
-    "width_mm": "width",
-    "base_height_mm": "base_height",
-    "EI_N_m2": "bending_stiffness",
-    "GJ_N_m2": "torsional_stiffness",
-}
+EDITED_COLUMNS: Final = {name: COLUMNS[name].field for name in ("width_mm", "base_height_mm", *STIFFNESSES)}
 """Columns of a ski's table that can be edited, with their names in `Ski`."""
 SIDECUT: Final = "sidecut_depth"
 """Factor of how much wider than the waist the ski is: the waist's own width stays."""
@@ -198,7 +193,7 @@ def shape_value(ski: Ski, name: str) -> float:
         raise ParameterError("the ski has no parameter {name}. {allowed}").tag(
             "unknown_name", name=name, allowed=suggest_and_list(name, allowed)
         )
-    return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
+    return 1.0 if name in FACTORS else key_value(ski.keys or {}, name.removeprefix("ski."))
 
 
 def _column_and_row(name: str) -> tuple[str, int]:
@@ -208,7 +203,8 @@ def _column_and_row(name: str) -> tuple[str, int]:
     return row[1], int(row[2]) - 1
 
 
-def _key_value(keys: Mapping[str, Any], place: str) -> float:
+def key_value(keys: Mapping[str, Any], place: str) -> float:
+    """Number of a key of a ski file, or of a row of a list; a missing key has its default."""
     row = _ROW.fullmatch(place)
     if row:
         return float(keys[row[1]][int(row[2]) - 1])

@@ -199,14 +199,7 @@ def _keys_text(ski: Ski, table: str) -> str:
 
 
 def _table_text(ski: Ski) -> str:
-    tables = {
-        "station_m": ski.station,
-        "width_mm": ski.width,
-        "base_height_mm": ski.base_height,
-        "EI_N_m2": ski.bending_stiffness,
-        "GJ_N_m2": ski.torsional_stiffness,
-        "mass_per_length_kg_per_m": ski.mass_per_length,
-    }
+    tables = {name: getattr(ski, column.field) for name, column in COLUMNS.items()}
     if _is_rigid(ski):
         del tables["EI_N_m2"], tables["GJ_N_m2"]
     columns = [table / COLUMNS[name].factor for name, table in tables.items()]
