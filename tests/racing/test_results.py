@@ -190,7 +190,7 @@ def test_gaps_at_gates_are_those_on_the_own_snow() -> None:
     other = score(9.0, ("passed", 4.0), ("passed", 9.0))
     found = Worth(name="wax", scores=(mine, other), base=(base, other)).gaps(["a", "b"])
     assert all(isinstance(each, GateGap) for each in found)
-    assert [each.gap for each in found] == pytest.approx([-0.2, 0.5])
+    assert [each.gap_s for each in found] == pytest.approx([-0.2, 0.5])
 
 
 def test_a_comparison_is_reported_and_kept(tmp_path: Path) -> None:

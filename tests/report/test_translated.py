@@ -168,7 +168,7 @@ KEYS = frozenset(
 NAMES = ("run A", "run B")
 CHOICES = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
 GAPS = tuple(
-    GateGap(gate=gate, outcome="passed", other_outcome=other, time=own, other_time=its, gap=gap, lost=lost)
+    GateGap(gate=gate, outcome="passed", other_outcome=other, time_s=own, other_time_s=its, gap_s=gap, lost_s=lost)
     for gate, other, own, its, gap, lost in (
         ("1", "passed", 1.5, 1.25, 0.25, 0.25),
         ("2", "missed", 2.5, None, None, None),

@@ -187,10 +187,10 @@ def compare(options: argparse.Namespace) -> int:
     prepare_output(options.out)
     comparison, verdict = _compare_tracks(options)
     from ..comparison import comparison_dict
-    from ..track.course.gates_table import gap_rows, read_gate_gaps
+    from ..track.course.gates_table import read_gate_gaps
 
     gaps = read_gate_gaps(options.simulated, options.measured)
-    answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": gap_rows(gaps)})
+    answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": [gap._asdict() for gap in gaps]})
     print_warnings(comparison.warnings)
     if options.json:
         print_json(answer)

@@ -19,7 +19,7 @@ from typing import Final
 import numpy as np
 from scipy.special import chdtrc, expit, gammaln
 
-from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
+from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.messages import Message
 from .campaign_fit import Priors
 from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
@@ -52,11 +52,6 @@ class SpreadTest:
     p: float
     factor: float
 
-    @property
-    def is_clear(self) -> bool:
-        """True if the spreads differ beyond chance and by a clear factor."""
-        return self.p < LEVEL and self.factor > CLEAR_FACTOR
-
 
 def fit_in_groups(
     readings: Readings,
@@ -74,11 +69,16 @@ def fit_in_groups(
     labels: candidate groupings: the name of the grouping, and the label of each series.
     """
     model = fit_campaign(readings, hardness, uncertainty, counts=counts, priors=priors)
+    usable = model.counts & np.isfinite(model.log_hardness)
+    squares, degrees, _ = _offset_squares(model)
     clear = []
     for grouping, label in labels.items():
         names, index = index_names(label)
-        tests = spread_tests(model, index) if len(names) > 1 else ()
-        clear += [(test.p, grouping, names, index) for test in tests if test.is_clear]
+        for Q, f in ((model.misfit, model.free), (squares, degrees)):  # the scatter s, and the seating τ
+            sums = (np.bincount(index[usable], values[usable]).astype(np.float64) for values in (Q, f))
+            test = bartlett(*sums, fewest=FEWEST_DEGREES)
+            if test.p < LEVEL and test.factor > CLEAR_FACTOR:  # beyond chance, and by a clear factor
+                clear.append((test.p, grouping, names, index))
     if clear:
         _, grouping, names, index = min(clear, key=lambda entry: entry[0])
     elif (sorted_ := noisier_series(model)) is not None:
@@ -87,16 +87,6 @@ def fit_in_groups(
         return model
     apart = fit_campaign(readings, hardness, uncertainty, counts=counts, group=index, priors=priors)
     return replace(apart, grouped_by=grouping, group_names=tuple(names))
-
-
-def spread_tests(model: CampaignModel, index: IntArray) -> tuple[SpreadTest, SpreadTest]:
-    """Tests of the scatter s and of the seating τ between the groups of ``index`` (m,), of a model with one group."""
-    usable = model.counts & np.isfinite(model.log_hardness)
-    squares, degrees, _ = _offset_squares(model)
-    return (
-        _bartlett(model.misfit[usable], model.free[usable], index[usable]),
-        _bartlett(squares[usable], degrees[usable], index[usable]),
-    )
 
 
 def _offset_squares(model: CampaignModel) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -182,12 +172,6 @@ def _log_density(sums: Sequence[tuple[FloatArray, FloatArray]], scales: Sequence
         half, y = 0.5 * degrees[present], squares[present] / (2.0 * max(scale, 1e-300))
         density[present] += (half - 1.0) * np.log(y) - y - gammaln(half) - np.log(2.0 * max(scale, 1e-300))
     return density
-
-
-def _bartlett(squares: FloatArray, degrees: FloatArray, index: IntArray) -> SpreadTest:
-    """The test from sums of squares and degrees of freedom of the series."""
-    Q, f = (np.bincount(index, weights=values).astype(np.float64) for values in (squares, degrees))
-    return bartlett(Q, f, fewest=FEWEST_DEGREES)
 
 
 def bartlett(squares: FloatArray, degrees: FloatArray, *, fewest: float) -> SpreadTest:

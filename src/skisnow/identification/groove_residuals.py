@@ -46,13 +46,12 @@ STRAIGHTEST: Final = 1e6
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """Groove of one ski: remaining depth, width and turn radius (m), grip area ∫ e ds (m²), load (N)."""
+    """Groove of one ski: remaining depth, width and turn radius (m), grip area ∫ e ds (m²)."""
 
     depth: float
     width: float
     turn_radius: float
     grip_area: float
-    load: float
 
 
 @dataclass(slots=True)
@@ -218,4 +217,4 @@ def _compute_groove(scenario: ScenarioFile, values: Mapping[str, Any]) -> Groove
     local = angle + float(twist[deepest])
     reach = float(scenario.scenario.ski.at(float(equilibrium.station[deepest])).width) * math.cos(local)
     width = min(float(depth[deepest]) / math.tan(local), reach)
-    return Groove(float(depth[deepest]) * (1.0 - 1.0 / ratio), width, radius, limit / N_PER_MM2, load)
+    return Groove(float(depth[deepest]) * (1.0 - 1.0 / ratio), width, radius, limit / N_PER_MM2)

@@ -287,8 +287,8 @@ def pair(tmp_path: Path) -> tuple[Path, Path]:
 def test_gap_and_loss_at_each_gate(pair: tuple[Path, Path]) -> None:
     gaps = present(read_gate_gaps(*pair))
     assert [each.gate for each in gaps] == ["1", "2", "3", "4"]
-    assert [each.gap for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.1), None]
-    assert [each.lost for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.3), None]
+    assert [each.gap_s for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.1), None]
+    assert [each.lost_s for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.3), None]
     assert [each.other_outcome for each in gaps] == ["passed", "not_reached", "passed", "passed"]
     rows = gaps_csv(gaps).splitlines()
     assert rows[0].split(",")[::5] == ["gate", "gap_s"]

@@ -106,7 +106,7 @@ MOST_NAMES = 26  # maximum number of gate names on the axis; of more gates, ever
 
 def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Drawing]:
     """Figure with its caption if both crossed a gate; ``names`` of the run and of the run that it is compared with."""
-    if all(gap.gap is None for gap in gaps):
+    if all(gap.gap_s is None for gap in gaps):
         return
     alt = Message(
         "Gap in time at each gate and time lost between gates, {own} against {other}.", own=names[0], other=names[1]
@@ -122,8 +122,8 @@ def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Dr
 
 def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> Message:
     """Sentence about who is ahead at the last gate that both crossed."""
-    last = [gap for gap in gaps if gap.gap is not None][-1]
-    gap = last.gap or 0.0
+    last = [gap for gap in gaps if gap.gap_s is not None][-1]
+    gap = last.gap_s or 0.0
     fields = {"own": names[0], "other": names[1], "gate": last.gate, "gap": abs(gap)}
     if abs(gap) < 0.005:
         return Message("{own} and {other} cross gate {gate} level.", **fields)
@@ -136,8 +136,8 @@ def gate_gaps_figure(gaps: Sequence[GateGap], names: tuple[str, str]) -> Figure:
     """Draw the gap at each gate, and below it the time lost between gates."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=100.0)
     above, below = figure.subplots(2, 1, sharex=True)
-    crossed = [i for i, gate in enumerate(gaps) if gate.gap is not None]
-    gap, lost = (np.array([getattr(gaps[i], name) for i in crossed], dtype=float) for name in ("gap", "lost"))
+    crossed = [i for i, gate in enumerate(gaps) if gate.gap_s is not None]
+    gap, lost = (np.array([getattr(gaps[i], name) for i in crossed], dtype=float) for name in ("gap_s", "lost_s"))
     for axes in (above, below):
         axes.axhline(0.0, color=PALE, linewidth=0.8, zorder=0)
     above.plot(crossed, gap, marker="o", markersize=3.4, color=BLUE, linewidth=1.1)

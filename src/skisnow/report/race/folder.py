@@ -13,7 +13,7 @@ from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
 from ...racing import QuickestLine, Score, Worth, write_line
 from ...simulation.run import Run
-from ...track.course.gates_table import GAP_COLUMNS, GateGap, gap_rows, gaps_csv
+from ...track.course.gates_table import GateGap, gaps_csv
 from ..figures.course import run_course
 from ..figures.drawing import FORMS, Picture
 from ..figures.figure_files import write_figure, write_pictures
@@ -69,7 +69,7 @@ def _write_gaps(worth: Worth, gates: Sequence[str], folder: Path, own: str) -> N
     name = Path(worth.name).stem
     gaps = worth.gaps(gates)
     write_file(folder / f"gaps_{name}.csv", gaps_csv(gaps))
-    if any(gap.gap is not None for gap in gaps):
+    if any(gap.gap_s is not None for gap in gaps):
         write_figure(folder / f"gaps_{name}.png", lambda: gate_gaps_figure(gaps, (name, own)))
 
 
@@ -81,7 +81,7 @@ _TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
 def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     """Table for a terminal with a line for each gate: both times, the gap, the time lost since the gate before."""
     rows: list[tuple[str, ...]] = [("gate", Message("time (s)"), "other (s)", "gap (s)", "lost (s)")]
-    for row in gap_rows(gaps):
+    for row in (gap._asdict() for gap in gaps):
         rows.append((str(row["gate"]), *(_hundredths(row[name], signed=name in _TIMES[2:]) or "-" for name in _TIMES)))
     heading = Message("Gates of {name} against {name_2}, behind +", name=names[0], name_2=names[1])
     return "\n".join([heading, *aligned_rows(rows), _result_sentence(gaps, names)])
@@ -109,11 +109,11 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
                 Message("Its time"), Message("Gap"), Message("Lost"))  # fmt: skip
     columns = [
         Column(name, words, "text", unit="s" if name in _TIMES else "")
-        for name, words in zip(GAP_COLUMNS, headings, strict=True)
+        for name, words in zip(GateGap._fields, headings, strict=True)
     ]
     rows = [
-        tuple(_gap_cell(name, row[name]) for name in GAP_COLUMNS)
-        for row in gap_rows(gaps)
+        tuple(_gap_cell(name, row[name]) for name in GateGap._fields)
+        for row in (gap._asdict() for gap in gaps)
     ]  # fmt: skip
     note = Message("Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses.")
     caption = Message("Gates of {run} against {other}.", run=names[0], other=names[1])
@@ -134,7 +134,7 @@ def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
     crossed = _crossed_by_both(gaps)
     if not crossed:
         return Markup("")
-    gap = crossed[-1].gap or 0.0
+    gap = crossed[-1].gap_s or 0.0
     value = Markup("<strong>{} s</strong>").format(local_number(f"{abs(gap):.2f}"))
     fields = {"value": value, "gate": crossed[-1].gate, "number": len(crossed), "all": len(gaps)}
     if gap > 0.0:
@@ -147,7 +147,7 @@ def _result_sentence(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Messa
 
 
 def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:
-    return [gap for gap in gaps if gap.gap is not None]
+    return [gap for gap in gaps if gap.gap_s is not None]
 
 
 def _hundredths(value: float | None, *, signed: bool = False) -> str | None:

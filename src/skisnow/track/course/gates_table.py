@@ -71,26 +71,25 @@ def time_warnings(result: CourseResult) -> tuple[str, ...]:
 GATES_FILE: Final = "gates.csv"
 APART: Final = 0.05
 """Distance (m) between turning poles of two gates that are the same."""
-GAP_COLUMNS: Final = ("gate", "outcome", "time_s", "other_outcome", "other_time_s", "gap_s", "lost_s")
 
 
 class GateGap(NamedTuple):
-    """One gate of two runs, in the order of `GAP_COLUMNS`.
+    """One gate of two runs; the fields are the columns of tables and JSON.
 
     gate: name of the gate.
     outcome, other_outcome: outcome of each run, as in gates.csv.
-    time, other_time: time (s) from the start of each run; None if not crossed.
-    gap: time (s) by which the first run is behind the other one; None if one did not cross the gate.
-    lost: change (s) of the gap since the last gate that both crossed.
+    time_s, other_time_s: time (s) from the start of each run; None if not crossed.
+    gap_s: time (s) by which the first run is behind the other one; None if one did not cross the gate.
+    lost_s: change (s) of the gap since the last gate that both crossed.
     """
 
     gate: str
     outcome: str
-    time: float | None
+    time_s: float | None
     other_outcome: str
-    other_time: float | None
-    gap: float | None
-    lost: float | None
+    other_time_s: float | None
+    gap_s: float | None
+    lost_s: float | None
 
 
 def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
@@ -131,10 +130,5 @@ def _gate_rows(place: Path) -> list[dict[str, Any]]:
 
 
 def gaps_csv(gaps: Sequence[GateGap]) -> str:
-    """Table with a row for each gate and `GAP_COLUMNS` as text; empty cells for missing values."""
-    return csv_text([GAP_COLUMNS, *gaps])
-
-
-def gap_rows(gaps: Sequence[GateGap]) -> list[dict[str, Any]]:
-    """Rows with `GAP_COLUMNS`; None for missing values."""
-    return [dict(zip(GAP_COLUMNS, gap, strict=True)) for gap in gaps]
+    """Table with a row for each gate as text; empty cells for missing values."""
+    return csv_text([GateGap._fields, *gaps])
