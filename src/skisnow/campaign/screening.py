@@ -22,21 +22,10 @@ from .problems import (
     QUALITY_FLAGS,
     RESOLUTIONS,
     Problem,
-    QualityFlag,
     with_sheet_name,
 )
 from .reading.table_forms import PENETRATION, SHEAR
 from .records import Campaign, PenetrationTests, ShearTests
-
-__all__ = [
-    "QUALITY_FLAGS",
-    "QualityFlag",
-    "flag_problems",
-    "maximum_depths",
-    "reading_at_largest_load",
-    "screen_penetration",
-    "screen_shear",
-]
 
 _ROUNDING: Final = 1e-9  # relative; limits and readings come from decimal millimetres
 

@@ -23,7 +23,7 @@ from .._support.messages import Message
 from .._support.spreadsheet_text import number
 from .._support.units import Facts, Shown
 from .._support.user_files import ContentError, plain_bytes
-from ..parameters import Allowed, Quantity, require_declared
+from ..parameters import Allowed, Declared, Quantity
 from ..parameters.quantity import LARGEST
 from .problems import error
 
@@ -163,7 +163,11 @@ class _Reading:
         names = [_TIME if name.lower() == _TIME else name.upper() for name in listed.split()]
         if _TIME not in names or len(set(names)) != len(names):
             self._refuse(line, "fields", listed[:80], f"different names, {_TIME} among them", "Correct the header.")
-        offset = self._zone()
+        offset = self._number_of("tz", 0.0)
+        low, high = _ZONES
+        if not low <= offset <= high:
+            row, text = self._header["tz"]
+            self._refuse(row, "tz", text[:80], f"hours from {low:g} to {high:g}", "Correct the time zone.")
         times, table = self._times_and_values(names, offset)
         nodata = self._number_of("nodata", -999.0)
         values = self._in_si(np.where(table == nodata, math.nan, table), names)
@@ -178,15 +182,6 @@ class _Reading:
                 self._refuse(self._header[key][0], key, f"{value:g}", allowed, "Correct the place.")
         station = self._header.get("station_name", self._header["station_id"])[1]
         return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
-
-    def _zone(self) -> float:
-        """Hours east of Greenwich of the times that name no zone."""
-        hours = self._number_of("tz", 0.0)
-        low, high = _ZONES
-        if not low <= hours <= high:
-            line, text = self._header["tz"]
-            self._refuse(line, "tz", text[:80], f"hours from {low:g} to {high:g}", "Correct the time zone.")
-        return hours
 
     def _in_si(self, table: FloatArray, names: Sequence[str]) -> FloatArray:
         """A table in SI, by the order of offset and multiplier of the file's version."""
@@ -279,8 +274,8 @@ class _Reading:
         return moment.timestamp()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WeatherSettings:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class WeatherSettings(Declared):
     """The section ``[weather]`` of campaign.toml."""
 
     file: Annotated[
@@ -300,9 +295,6 @@ class WeatherSettings:
         Quantity("longest_gap_h", "between readings of the station that are farther apart nothing is interpolated"),
         Allowed(0.0),
     ] = 3.0
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -22,7 +22,7 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, MM, Facts, Shown, amount
 from .._support.user_files import ContentError, plain_bytes
-from ..parameters import Allowed, Quantity, require_declared
+from ..parameters import Allowed, Declared, Quantity
 from .problems import error
 
 HEADER_BYTES: Final = 512
@@ -104,16 +104,26 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
             "at least {header_bytes} bytes, the header of a SnowMicroPen recording", header_bytes=HEADER_BYTES
         )
         _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
-    header = {key: _unpack_value(data, offset, form) for key, offset, form in _FIELDS}
+    header: dict[str, Any] = {}
+    for key, offset, form in _FIELDS:
+        values = struct.unpack_from(f">{form}", data, offset)
+        header[key] = values[0] if len(values) == 1 else values
     _require_plausible_header(name, header, len(data))
-    counts = np.frombuffer(data, dtype=">i2", count=header["samples"], offset=HEADER_BYTES)
-    return _make_profile(name, header, counts.astype(np.float64))
-
-
-def _unpack_value(data: bytes, offset: int, form: str) -> Any:
-    """Value at an offset in a `struct` format, big-endian; a tuple if the format has several values."""
-    values = struct.unpack_from(f">{form}", data, offset)
-    return values[0] if len(values) == 1 else values
+    counts = np.frombuffer(data, dtype=">i2", count=header["samples"], offset=HEADER_BYTES).astype(np.float64)
+    distance, height = header["sample_distance_mm"] * MM, header["height_cm"]
+    latitude, longitude = _position_or_none(header)
+    return SnowMicroPenProfile(
+        name=_text(header["name"]),
+        comment=_text(header["comment"][: max(header["comment_length"], 0)]),
+        depth=np.arange(counts.size) * distance,
+        force=counts * header["force_per_count"],
+        sample_distance=distance,
+        tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
+        recorded_on=_recording_day(name, header["clock"]),
+        latitude_deg=latitude,
+        longitude_deg=longitude,
+        height=None if height == _NO_HEIGHT_CM or not np.isfinite(height) else height * CM,
+    )
 
 
 def _refuse(name: str, value: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
@@ -149,40 +159,17 @@ def _require_plausible_header(file: str, header: dict[str, Any], size: int) -> N
         _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
 
 
-def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
-    distance = header["sample_distance_mm"] * MM
-    latitude, longitude = _position_or_none(header)
-    height = header["height_cm"]
-    return SnowMicroPenProfile(
-        name=_text(header["name"]),
-        comment=_text(header["comment"][: max(header["comment_length"], 0)]),
-        depth=np.arange(counts.size) * distance,
-        force=counts * header["force_per_count"],
-        sample_distance=distance,
-        tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
-        recorded_on=_date_in_file_name(file) or _clock_date(header["clock"]),
-        latitude_deg=latitude,
-        longitude_deg=longitude,
-        height=None if height == _NO_HEIGHT_CM or not np.isfinite(height) else height * CM,
-    )
-
-
 def _text(raw: bytes) -> str:
     """Text before the first NUL."""
     return raw.split(b"\0", 1)[0].decode("latin-1").strip()
 
 
-def _clock_date(fields: tuple[int, ...]) -> date | None:
-    try:
-        return datetime(*fields, tzinfo=UTC).date()  # type: ignore[arg-type,misc]
-    except ValueError:
-        return None
-
-
-def _date_in_file_name(name: str) -> date | None:
-    for digits in re.findall(r"(?<!\d)\d{8}(?!\d)", name):
+def _recording_day(file: str, clock: tuple[int, ...]) -> date | None:
+    """Day in the name of the file, else of the instrument's clock; None if none of them is a date."""
+    names = [(int(digits[:4]), int(digits[4:6]), int(digits[6:])) for digits in re.findall(r"(?<!\d)\d{8}(?!\d)", file)]
+    for fields in (*names, clock):
         try:
-            return datetime.strptime(digits, "%Y%m%d").replace(tzinfo=UTC).date()
+            return datetime(*fields, tzinfo=UTC).date()  # type: ignore[arg-type,misc]
         except ValueError:
             continue
     return None
@@ -202,8 +189,8 @@ def _position_or_none(header: dict[str, Any]) -> tuple[float, float] | tuple[Non
 Relation: TypeAlias = Literal["proksch-2015", "calonne-2020", "king-2020a", "king-2020b"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SnowMicroPenSettings:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class SnowMicroPenSettings(Declared):
     """The section ``[snow_micro_pen]`` of campaign.toml, in SI; every default is a modelling assumption."""
 
     from_depth: Annotated[
@@ -232,9 +219,6 @@ class SnowMicroPenSettings:
     relation: Annotated[
         Relation, Quantity("relation", "publication whose regression gives density and specific surface area")
     ] = "calonne-2020"
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, repr=False)

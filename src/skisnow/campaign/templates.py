@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from .._support.errors import OutputError
-from .._support.spreadsheet_text import csv_text
+from .._support.spreadsheet_text import csv_text, is_number
 from .._support.staging import prepare_folder, staged, write_file
 from ..parameters import Quantity
 from ..snow.published import moessner_2013
@@ -25,12 +25,9 @@ from .reference import design
 EXAMPLE_STATUS: Final = "example: write over or delete this row"
 """A status cancels the experiment: the example is in no estimate even where it is left standing."""
 TOOL: Final = design.TOOL
-TOOL_LENGTHS_MM: Final = (moessner_2013.TOOL_LENGTH_MM, moessner_2013.TOOL_WIDTH_MM)
+LENGTH_MM, WIDTH_MM = moessner_2013.TOOL_LENGTH_MM, moessner_2013.TOOL_WIDTH_MM
 PLATE: Final = design.PLATE
 PLATE_LENGTH_MM: Final = design.PLATE_LENGTH * 1e3
-LOADS_N: Final = design.LOADS
-"""Evenly spaced between the paper's 12 and 492 N."""
-GAUGE_RESOLUTION_MM: Final = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,19 +37,13 @@ class Template:
     form: TableForm
     example: Mapping[str, str | float]
 
-    @property
-    def numbers(self) -> dict[str, Quantity]:
-        """Columns of numbers by name."""
-        return {quantity.name: quantity for quantity in self.form.numbers}
-
     def explanations(self) -> Iterator[tuple[str, str]]:
         """Pairs of column and explanation."""
-        for name in self.example:
-            quantity = self.numbers.get(name)
-            if quantity is None:
-                yield name, WORDS.get(name, "")
-            else:
-                yield name, f"{quantity.meaning}; {allowed_words(quantity)} in {quantity.unit}"
+        numbers = {
+            quantity.name: f"{quantity.meaning}; {allowed_words(quantity)} in {quantity.unit}"
+            for quantity in self.form.numbers
+        }
+        yield from ((name, numbers.get(name) or WORDS.get(name, "")) for name in self.example)
 
 
 WORDS: Final = {
@@ -75,7 +66,7 @@ TEMPLATES: Final = (
         PENETRATION,
         {
             "experiment": "P1", "site": "site A", "spot": "1", "tool": TOOL, "edge_angle_deg": 30.0,
-            "load_N": LOADS_N[0], "depth_mm": 1.25, **_LAST,
+            "load_N": design.LOADS[0], "depth_mm": 1.25, **_LAST,
         },
     ),
     Template(
@@ -89,19 +80,12 @@ TEMPLATES: Final = (
     Template(DROP_CONE, {"test": "C1", "site": "site A", "repeat": "1", "drop_cone_depth_mm": 13.5, **_LAST}),
 )  # fmt: skip
 
-LENGTH_MM, WIDTH_MM = TOOL_LENGTHS_MM
-GIVEN: Final[dict[str, str]] = {
-    "place": "",
-    "gauge_resolution_mm": f"{GAUGE_RESOLUTION_MM:g}",
-    "load_steps_N": "; ".join(f"{load:g}" for load in LOADS_N),
-}
-"""Values of a new campaign as cells, without its name."""
-
 
 def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
     """Key, cell and quantity of each value of a new campaign with this name."""
-    for key, quantity in CAMPAIGN_KEYS.items():
-        yield key, name if key == "name" else GIVEN.get(key, ""), quantity
+    loads = "; ".join(f"{load:g}" for load in design.LOADS)
+    cells = {"name": name, "gauge_resolution_mm": "0.01", "load_steps_N": loads}
+    yield from ((key, cells.get(key, ""), quantity) for key, quantity in CAMPAIGN_KEYS.items())
 
 
 def campaign_toml(name: str) -> str:
@@ -150,7 +134,8 @@ def workbook_bytes(name: str) -> bytes:
     book = Workbook()
     book.remove(book.active)
     described = [
-        (key, _as_cell(value), quantity.unit, quantity.meaning) for key, value, quantity in keys_with_values(name)
+        (key, float(value) if is_number(value, ".") else value, quantity.unit, quantity.meaning)
+        for key, value, quantity in keys_with_values(name)
     ]
     _fill_sheet(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, _OBSERVERS])
     _fill_sheet(
@@ -171,13 +156,6 @@ def workbook_bytes(name: str) -> bytes:
 
 
 _OBSERVERS: Final = ("observers", "", "", "who; several are parted by semicolons")
-
-
-def _as_cell(text: str) -> str | float:
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _fill_sheet(
@@ -224,14 +202,11 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
         {WORKBOOK: workbook_bytes(name)} if xlsx else {CAMPAIGN_FILE: campaign_toml(name)}
     )
     if not xlsx and not there:
-        contents |= {template.form.file: _template_csv(template) for template in TEMPLATES}
+        for template in TEMPLATES:
+            cells = [f"{cell:g}" if isinstance(cell, float) else cell for cell in template.example.values()]
+            contents[template.form.file] = csv_text([template.example, cells])
     prepare_folder(folder)
     with staged(folder, last=next(iter(contents))) as stage:
         for file, content in contents.items():
             write_file(stage.path / file, content)
     return tuple(folder / file for file in contents)
-
-
-def _template_csv(template: Template) -> str:
-    cells = [f"{cell:g}" if isinstance(cell, float) else cell for cell in template.example.values()]
-    return csv_text([template.example, cells])

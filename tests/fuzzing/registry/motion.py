@@ -8,8 +8,7 @@ import numpy as np
 
 from skisnow import load_scenario, simulate
 from skisnow.interop.opensim.c3d import read_c3d
-from skisnow.interop.opensim.markers import read_trc
-from skisnow.interop.opensim.table import read_motion
+from skisnow.interop.opensim.motion_text import read_motion, read_trc
 from skisnow.replay import replay_of_file
 from skisnow.replay.page import replay_bytes
 from skisnow.report.run.file import write_run_file
@@ -67,11 +66,11 @@ def _drawn(folder: Path) -> object:
 
 READERS = (
     single_file(
-        "markers.trc", _TRC, lambda path: repr(read_trc(path)), TEXT, "interop.opensim.markers:read_trc",
+        "markers.trc", _TRC, lambda path: repr(read_trc(path)), TEXT, "interop.opensim.motion_text:read_trc",
         target="m.trc",
     ),
     single_file(
-        "motion.mot", _MOT, lambda path: repr(read_motion(path)), TEXT, "interop.opensim.table:read_motion",
+        "motion.mot", _MOT, lambda path: repr(read_motion(path)), TEXT, "interop.opensim.motion_text:read_motion",
         target="m.mot",
     ),
     single_file(

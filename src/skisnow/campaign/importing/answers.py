@@ -105,8 +105,14 @@ def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
 
 def saved_templates(folder: Path | None = None) -> dict[str, Path]:
     """Files of the saved templates by name, in a folder or the user's own."""
-    places = (own_templates() if folder is None else folder).glob("*.toml")
-    return {path.stem: path for path in sorted(places)}
+    return {path.stem: path for path in sorted(_templates_folder(folder).glob("*.toml"))}
+
+
+def _templates_folder(folder: Path | None) -> Path:
+    """The folder, or that of the user's own templates, next to the user's own store."""
+    from platformdirs import user_data_path
+
+    return folder or user_data_path("skisnow") / TEMPLATES
 
 
 def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> Path:
@@ -123,7 +129,7 @@ def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> 
             "a letter or digit."
         ).tag("bad_name", name=name)
     text = "\n".join(parse_template(campaign.decode(), name).toml_lines()).lstrip() + "\n"
-    path = (own_templates() if folder is None else folder) / f"{name}.toml"
+    path = _templates_folder(folder) / f"{name}.toml"
     if path.exists() and path.read_text(encoding="utf-8") != text:
         raise ParameterError("A template {name} with other answers exists. Take another name, or remove {file}.").tag(
             "name_in_use", name=name, file=path
@@ -131,13 +137,6 @@ def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> 
     path.parent.mkdir(parents=True, exist_ok=True)
     write_file(path, text)
     return path
-
-
-def own_templates() -> Path:
-    """Folder of the user's own templates, next to the user's own store."""
-    from platformdirs import user_data_path
-
-    return user_data_path("skisnow") / TEMPLATES
 
 
 def parse_template(text: str, name: str) -> Answers:

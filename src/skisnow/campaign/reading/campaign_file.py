@@ -136,7 +136,19 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
     top.refuse_misspelt(TOP_KEYS)
     top.table("import").refuse_misspelt(IMPORT_KEYS)
     tools, tool_names, flat_tools = _read_tools(top)
-    plates, plate_names = _read_plates(top)
+    plates: dict[str, float] = {}
+    plate_names: set[str] = set()
+    for entry in top.tables("plate"):
+        name = _new_name(entry, plate_names)
+        entry.refuse_misspelt(("name", "length_mm"))
+        length = _required_length(entry, _PLATE_LENGTH)
+        if name is not None and length is not None:
+            plates[name] = length
+    pen = top.table("snow_micro_pen")
+    settings = pen.declared(SnowMicroPenSettings)
+    if settings.from_depth >= settings.to_depth:
+        allowed = Message("a depth above from_depth_mm, {from_depth:g}", from_depth=settings.from_depth / MM)
+        pen.refuse("to_depth_mm", allowed, Message("Correct one of the two."), value=f"{settings.to_depth / MM:g}")
     return CampaignFile(
         name=top.text("name", blank_allowed=True),
         place=top.text("place", blank_allowed=True) or "",
@@ -146,21 +158,13 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
         tools=tools,
         plates=plates,
         tool_names=tool_names,
-        plate_names=plate_names,
+        plate_names=frozenset(plate_names),
         flat_tools=flat_tools,
         excluding=_excluding(top),
         headings=parse_headings(top),
-        snow_micro_pen=_recording_settings(top.table("snow_micro_pen")),
+        snow_micro_pen=settings,
         weather=top.table("weather").declared(WeatherSettings),
     )
-
-
-def _recording_settings(section: TomlValues) -> SnowMicroPenSettings:
-    settings = section.declared(SnowMicroPenSettings)
-    if settings.from_depth >= settings.to_depth:
-        allowed = Message("a depth above from_depth_mm, {from_depth:g}", from_depth=settings.from_depth / MM)
-        section.refuse("to_depth_mm", allowed, Message("Correct one of the two."), value=f"{settings.to_depth / MM:g}")
-    return settings
 
 
 def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:
@@ -170,8 +174,14 @@ def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], froze
     flat: set[str] = set()
     for entry in top.tables("tool"):
         name = _new_name(entry, names)
-        shape_name = _shape_name(entry)
+        allowed = Message("one of {shapes}", shapes=list(SHAPES))
+        if "shape" not in entry.values:
+            entry.refuse("shape", allowed, Message("Add the shape."))
+        shape_name = entry.text("shape")
         if shape_name is None:
+            continue
+        if shape_name not in SHAPES:
+            entry.refuse_unknown("shape", shape_name, SHAPES, allowed, Message("Correct the shape."))
             continue
         shape = SHAPES[shape_name]
         entry.refuse_misspelt(("name", "shape", *shape.lengths))
@@ -181,19 +191,6 @@ def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], froze
         if name is not None and not shape.has_edge:
             flat.add(name)
     return tools, frozenset(names), frozenset(flat)
-
-
-def _read_plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
-    """Length (m) of each valid plate by name, and the names of all plates, invalid ones as well."""
-    plates: dict[str, float] = {}
-    names: set[str] = set()
-    for entry in top.tables("plate"):
-        name = _new_name(entry, names)
-        entry.refuse_misspelt(("name", "length_mm"))
-        length = _required_length(entry, _PLATE_LENGTH)
-        if name is not None and length is not None:
-            plates[name] = length
-    return plates, frozenset(names)
 
 
 def _new_name(entry: TomlValues, names: set[str]) -> str | None:
@@ -207,18 +204,6 @@ def _new_name(entry: TomlValues, names: set[str]) -> str | None:
     if name is not None:
         names.add(name)
     return name
-
-
-def _shape_name(entry: TomlValues) -> str | None:
-    allowed = Message("one of {shapes}", shapes=list(SHAPES))
-    if "shape" not in entry.values:
-        entry.refuse("shape", allowed, Message("Add the shape."))
-        return None
-    shape = entry.text("shape")
-    if shape is None or shape in SHAPES:
-        return shape
-    entry.refuse_unknown("shape", shape, SHAPES, allowed, Message("Correct the shape."))
-    return None
 
 
 def _required_length(entry: TomlValues, quantity: Quantity) -> float | None:
@@ -286,6 +271,7 @@ def campaign_schema() -> Schema:
     """JSON Schema of a parsed campaign.toml."""
     words = "Codes of the quality flags that exclude an experiment; replaces the default."
     exclude = {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
+    shapes = {name: table_schema(shape.lengths.values()) for name, shape in SHAPES.items()}
     return {
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:campaign:1",
@@ -317,7 +303,10 @@ def campaign_schema() -> Schema:
                 "type": "object",
                 "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
                 "required": ["name", "shape"],
-                "oneOf": [_shape_schema(name, shape) for name, shape in SHAPES.items()],
+                "oneOf": [
+                    {"properties": {"shape": {"const": name}, **keys["properties"]}, "required": keys["required"]}
+                    for name, keys in shapes.items()
+                ],
             },
             "plate": {
                 "type": "object",
@@ -338,9 +327,3 @@ def _by_heading(words: str) -> Schema:
     either: Schema = {"anyOf": [{"type": "string"}, pairs]}
     words = f"{words}; in a table of a table's name, such as penetration, for that one."
     return {"description": words, "type": "object", "additionalProperties": either}
-
-
-def _shape_schema(name: str, shape: Shape) -> Schema:
-    """Schema of the keys of tools with a shape."""
-    lengths = table_schema(shape.lengths.values())
-    return {"properties": {"shape": {"const": name}, **lengths["properties"]}, "required": lengths["required"]}

@@ -72,27 +72,10 @@ def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict
     return sorted_by_file
 
 
-def report_missing_files(corrections: RowCorrections, problems: list[Problem]) -> None:
-    """Report corrections whose file is missing or cannot be read."""
-    for of_one_row in corrections.values():
-        problems.extend(
-            correction.mismatch("file", correction.file, "a readable file of this campaign")
-            for correction in of_one_row
-        )
-
-
-def header_with_status(form: TableForm, header: Header, corrections: RowCorrections) -> Header:
-    """Append the column ``status`` if a correction cancels an experiment and the file has no such column."""
-    columns = (correction.column for of_one_row in corrections.values() for correction in of_one_row)
-    if STATUS in form.optional and STATUS not in header.columns and STATUS in columns:
-        return Header((*header.columns, STATUS), header.row)
-    return header
-
-
 class Corrector:
     """Applies the corrections of one file to its records.
 
-    header: header of the file, from `header_with_status`.
+    header: header of the file, with the column ``status`` if a correction cancels an experiment.
     mark: decimal mark of the file.
     """
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import difflib
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 from ..._support.messages import Message, joined, template
@@ -43,21 +43,12 @@ class Header:
     row: int
     units: tuple[str, ...] = ()
 
-    def renamed(self, form: TableForm, headings: Headings) -> Header:
-        """Header with the names of the columns instead of mapped headings."""
-        return Header(tuple(headings.name(form, column) for column in self.columns), self.row)
-
     @property
     def position(self) -> dict[str, int]:
         """Number of each named column; the first of equal names."""
         backwards = reversed(range(len(self.columns)))
         places = {self.columns[index]: index for index in backwards if self.columns[index]}
         return dict(sorted(places.items(), key=lambda item: item[1]))
-
-    @property
-    def unnamed(self) -> tuple[int, ...]:
-        """Numbers of the columns without a name."""
-        return tuple(index for index, name in enumerate(self.columns) if not name)
 
 
 def split_header(lines: list[int], rows: list[list[str]]) -> Header:
@@ -151,23 +142,14 @@ def _advise_mapping(heading: str, column: str) -> Message:
     return Message(advice, heading=heading, column=column)
 
 
-@dataclass(frozen=True, slots=True)
-class ColumnUnits:
-    """Units of the columns of a table.
-
-    conversions: conversion of each column whose unit is stated.
-    unstated: headings without a unit, by their columns.
-    """
-
-    conversions: Mapping[str, UnitConversion] = field(default_factory=dict)
-    unstated: Mapping[str, str] = field(default_factory=dict)
-
-
-def column_units(form: TableForm, header: Header, headings: Headings, problems: list[Problem]) -> ColumnUnits:
+def column_units(
+    form: TableForm, header: Header, headings: Headings, problems: list[Problem]
+) -> tuple[dict[str, UnitConversion], dict[str, str]]:
     """Resolve the units of a table; a column's own name such as load_N states its unit.
 
     form, header, headings: the table, its headings in the file, and the mapping of headings in campaign.toml.
     problems: list to which problems are added: a wrong unit, two units for one heading, a note on each conversion.
+    Returns the conversion of each column whose unit is stated, and the headings without a unit by their columns.
     """
     numbers = {column.name for column in form.numbers} - set(form.further)
     conversions: dict[str, UnitConversion] = {}
@@ -201,7 +183,7 @@ def column_units(form: TableForm, header: Header, headings: Headings, problems: 
                 action = Message("The numbers were converted; no action is needed.")
                 note = warning("converted_unit", form.file, column=column, value=value, allowed=allowed, action=action)
                 problems.append(replace(note, needs_action=False))
-    return ColumnUnits(conversions, unstated)
+    return conversions, unstated
 
 
 def _unit_error(form: TableForm, heading: str, column: str, row: int, allowed: Message, action: Message) -> Problem:

@@ -16,7 +16,7 @@ from ..._support.spreadsheet_text import SEPARATOR_NAMES, decimal_mark
 from ..problems import Problem, error, warning
 from .campaign_files import RawFiles
 from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector
-from .corrections import Corrector, header_with_status, report_missing_files
+from .corrections import STATUS, Corrector
 from .header import Header, check_header, column_units, split_header
 from .table_forms import TableForm
 
@@ -49,7 +49,9 @@ def read_table(form: TableForm, files: RawFiles, progress: Callable[[str], None]
     """
     text = files.csv_text(form)
     if form.file in files.absent:
-        report_missing_files(files.corrections.get(form.file, {}), files.problems)
+        for corrections in files.corrections.get(form.file, {}).values():
+            problems = (wrong.mismatch("file", wrong.file, "a readable file of this campaign") for wrong in corrections)
+            files.problems.extend(problems)
     if text is None:
         return None
     reading: TableReading | None = None
@@ -95,29 +97,32 @@ def _empty_error(form: TableForm, what: str) -> Problem:
 class TableReading:
     """Collects the records of a table in chunks.
 
-    header, corrector, units: header with the names of the columns, corrections, and units of the columns.
+    header, corrector: header with the names of the columns, and corrections.
+    conversions: conversion of each column whose unit is stated.
     """
 
     def __init__(self, form: TableForm, files: RawFiles, header: Header, text: CsvText | None = None) -> None:
         """Begin a table; numbers have decimal points without `text`, the file with the decimal mark."""
         self._form, self._problems, self._headings = form, files.problems, header.columns
-        self.units = column_units(form, header, files.headings, files.problems)
-        self._file_header = header.renamed(form, files.headings)
+        self.conversions, self._unstated = column_units(form, header, files.headings, files.problems)
+        self._file_header = Header(tuple(files.headings.name(form, heading) for heading in header.columns), header.row)
         mark = "."
         if text is not None:
             mark = _decimal_mark_of(form, self._file_header, text)
             files.problems.extend(_separator_and_mark_notes(form.file, text.separator, mark))
         files.problems.extend(check_header(form, self._file_header))
         corrections = files.corrections.get(form.file, {})
-        self.header = header_with_status(form, self._file_header, corrections)
+        corrected = (correction.column for of_one_row in corrections.values() for correction in of_one_row)
+        columns = self._file_header.columns
+        adds_status = STATUS in form.optional and STATUS not in columns and STATUS in corrected
+        self.header = Header((*columns, STATUS), self._file_header.row) if adds_status else self._file_header
         self.corrector = Corrector(form, self.header, corrections, mark=mark, problems=files.problems)
         self._row: list[IntArray] = []
         self._met_rows = False
         present = self.header.position
         self._names = {name: NameCollector(name, required=name in form.names) for name in form.names + form.optional}
         self._numbers = {
-            column.name: NumberCollector(column, mark, self.units.conversions.get(column.name))
-            for column in form.numbers
+            column.name: NumberCollector(column, mark, self.conversions.get(column.name)) for column in form.numbers
         }
         interpreted = (set(self._names) | set(self._numbers)) - set(form.further)
         self._further = {
@@ -152,7 +157,7 @@ class TableReading:
     def _without_surplus(self, lines: list[int], rows: list[list[str]]) -> Records:
         """Remove and report rows with a cell below an unnamed column; blank cells there are ignored."""
         width = len(self._file_header.columns)
-        unnamed = self._file_header.unnamed
+        unnamed = [index for index, name in enumerate(self._file_header.columns) if not name]
         if not unnamed and max(map(len, rows)) <= width:
             return lines, rows
         action = Message("Name the column in the header, or put the cell with a separator or decimal comma in quotes.")
@@ -190,7 +195,7 @@ class TableReading:
             further={name: collector.column() for name, collector in self._further.items()},
             absent=frozenset(name for name in self._form.required if name not in present),
             headings=self._headings,
-            unstated=self.units.unstated,
+            unstated=self._unstated,
         )
 
 

@@ -81,8 +81,7 @@ class TomlValues:
 
     def number(self, quantity: Quantity) -> float | None:
         """Number in the unit of its key; None if missing or invalid."""
-        key = quantity.name
-        return self._checked(self.values[key], quantity) if key in self.values else None
+        return self._checked(self.values[quantity.name], quantity) if quantity.name in self.values else None
 
     def numbers(self, quantity: Quantity) -> tuple[float, ...]:
         """List of the valid numbers."""

@@ -176,7 +176,12 @@ def description_text(sheets: Mapping[str, Rows]) -> str:
         several values; ``tools`` and ``plates`` have the keys of ``[[tool]]`` and ``[[plate]]`` as columns; ``columns``
         has heading, column or unit or both, and optionally table.
     """
-    lines = [line for row in _records(sheets.get(COLUMNS, [])) for line in _column_lines(row)]
+    lines = []
+    for row in _records(sheets.get(COLUMNS, [])):
+        keys = (*filter(None, (row.get("table"),)), row.get("heading", ""))
+        for section, name in (("columns", "column"), ("units", "unit")):
+            if row.get("heading") and row.get(name):
+                lines.append(f"{'.'.join((section, *map(toml_text, keys)))} = {toml_text(row[name])}")
     for row in _records(sheets.get(CAMPAIGN, [])):
         key = row.get("key", "")
         if key and row.get("value"):
@@ -193,13 +198,6 @@ def _records(rows: Rows) -> Iterator[Mapping[str, str]]:
     header: Sequence[str] = next(filled, [])
     for cells in filled:
         yield dict(zip(header, cells, strict=False))
-
-
-def _column_lines(row: Mapping[str, str]) -> Iterator[str]:
-    heading, table = row.get("heading", ""), row.get("table", "")
-    for section, name in (("columns", "column"), ("units", "unit")):
-        if heading and row.get(name):
-            yield f"{section}.{f'{toml_text(table)}.' if table else ''}{toml_text(heading)} = {toml_text(row[name])}"
 
 
 def _toml_line(key: str, cell: str) -> str:

@@ -296,7 +296,17 @@ def _campaign_toml(drawn: ReferenceCampaign) -> str:
     hard, soft, about_density = (
         scatter / N_PER_MM2 for scatter in (design.HARD_SCATTER, design.SOFT_SCATTER, design.DENSITY_SCATTER)
     )
-    further = _further_noise(drawn)
+    further = ""
+    if drawn.shear.turning is not None:
+        further += (
+            f"#   turning angles: u_y is {design.SHEAR_DISPLACEMENT / MM:g} mm, its logarithm varies by "
+            f"{noise.displacement_log_sd:g} from test to test; each angle by {noise.turning_sd / DEGREE:g} degrees\n"
+        )
+    if drawn.penetration.depth_after is not None:
+        further += (
+            f"#   creep at {design.CREEPING_SITE}: after waiting each depth is larger by an exponential share of mean "
+            f"{noise.creep_mean:g}\n"
+        )
     return f"""\
 # SYNTHETIC DATA: no snow was measured. Drawn by skisnow's reference campaign with seed {drawn.seed}.
 # Design, ranges and group sizes after Mössner and others (2013), J. Glaciol.; what that paper does not print is chosen.
@@ -331,19 +341,3 @@ width_mm = {tool.width / MM:g}
 name = "{design.PLATE}"
 length_mm = {design.PLATE_LENGTH / MM:g}
 """
-
-
-def _further_noise(drawn: ReferenceCampaign) -> str:
-    """Comment lines on the errors of turning angles and creep."""
-    noise, said = drawn.noise, ""
-    if drawn.shear.turning is not None:
-        said += (
-            f"#   turning angles: u_y is {design.SHEAR_DISPLACEMENT / MM:g} mm, its logarithm varies by "
-            f"{noise.displacement_log_sd:g} from test to test; each angle by {noise.turning_sd / DEGREE:g} degrees\n"
-        )
-    if drawn.penetration.depth_after is not None:
-        said += (
-            f"#   creep at {design.CREEPING_SITE}: after waiting each depth is larger by an exponential share of mean "
-            f"{noise.creep_mean:g}\n"
-        )
-    return said

@@ -23,7 +23,6 @@ from typing import Final
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...geometry import SkiPiece
@@ -119,12 +118,6 @@ DENSITY_SCATTER: Final = 0.059 * N_PER_MM2
 
 FLAT_LIMIT: Final = LOADS[-1] / (SKI_PIECE.length * SKI_PIECE.width * SHALLOWEST_FLAT_DEPTH)
 """Smallest H_V (N/m³) at which the flat tool stays shallower than `SHALLOWEST_FLAT_DEPTH`."""
-
-
-def planned_angles() -> FloatArray:
-    """Edge angle planned for each series (rad): the angles in turn within each site."""
-    turn = [EDGE_ANGLES_DEG[index % len(EDGE_ANGLES_DEG)] for site in PENETRATION_SITES for index in range(site.tests)]
-    return np.array(turn) * DEGREE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

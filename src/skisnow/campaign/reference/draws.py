@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..._support.arrays import BoolArray, FloatArray
+from ..._support.arrays import FloatArray
 from ..._support.units import DEGREE, MM
 from ...snow.published.moessner_2013 import failure_shear_stress_from_angle, failure_shear_stress_from_density
 from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
@@ -49,7 +49,16 @@ def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> Floa
 
 def edge_angle(generator: np.random.Generator, snow_hardness: FloatArray) -> FloatArray:
     """Planned angle (rad) of each series, or another random angle if the flat tool stays too shallow."""
-    planned = design.planned_angles()
+    planned = (
+        np.array(
+            [
+                design.EDGE_ANGLES_DEG[index % len(design.EDGE_ANGLES_DEG)]  # in turn within each site
+                for site in design.PENETRATION_SITES
+                for index in range(site.tests)
+            ]
+        )
+        * DEGREE
+    )
     others = np.array([angle for angle in design.EDGE_ANGLES_DEG if angle > 0]) * DEGREE
     instead = others[generator.integers(len(others), size=planned.size)]
     return np.where((planned == 0) & (snow_hardness >= design.FLAT_LIMIT), instead, planned)
@@ -78,8 +87,22 @@ def penetration(
         scatter[shrinks] = noise.depth_scatter * generator.standard_normal((int(shrinks.sum()), shape[1]))
         depth = true_depth * (1.0 + scatter)
         reading = _gauge_reading(depth, seating_offset, noise)
-    tests = _penetration_tests(edge_angle, reading.ravel())
+    sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.tests)]
     unknown = np.full(shape[0], np.nan)
+    tests = PenetrationTests(
+        experiment=_numbered_names("P", shape[0]),
+        site=tuple(site.name for site, _ in sites),
+        tool=(design.TOOL,) * shape[0],
+        spot=tuple(_spot_name(site, index) for site, index in sites),
+        edge_angle=edge_angle,
+        snow_density=unknown,
+        drop_cone_depth=unknown,
+        cancelled=("",) * shape[0],
+        first=np.arange(0, reading.size + 1, shape[1], dtype=np.int64),
+        load=np.tile(design.LOADS, shape[0]),
+        penetration_depth=reading.ravel(),
+        row=_row_numbers(reading.size),
+    )
     return DrawnPenetration(tests, seating_offset, layering, true_depth.ravel(), depth[:, -1], unknown)
 
 
@@ -97,30 +120,24 @@ def add_unloading(generator: np.random.Generator, drawn: DrawnPenetration, noise
     rebound = (deepest - design.SKI_PIECE.depth_at_volume(volume, angle)) / ratio[:, np.newaxis] * (1.0 + scatter)
     depth = np.maximum(deepest - rebound + drawn.seating_offset[:, np.newaxis], 0.0)
     there = np.isin(tests.site, design.UNLOADED_SITES)
-    readings = _unloading_readings(there, _round_to_gauge(depth, noise)[there])
+    depth = _round_to_gauge(depth, noise)[there]
+    up, (series, down) = len(design.LOADS), depth.shape
+    readings = UnloadingReadings(
+        first=np.concatenate(([0], np.cumsum(np.where(there, down, 0)))).astype(np.int64),
+        load=np.tile(design.LOADS[-2::-1], series),
+        penetration_depth=depth.ravel(),
+        row=np.repeat(2 + (np.flatnonzero(there) + 1) * up, down) + np.arange(depth.size),  # after those of the loading
+    )
     row = tests.row + readings.first[:-1][tests.series_of_reading]
     tests = replace(tests, unloading=readings, row=row)
     return drawn._replace(tests=tests, unloading_ratio=np.where(there, ratio, np.nan))
 
 
-def _unloading_readings(unloaded: BoolArray, depth: FloatArray) -> UnloadingReadings:
-    """Readings of the unloading, in the file's rows after the loading of their series.
-
-    unloaded: (n,) True for the series with an unloading.
-    depth: (k, steps) in m, of these k series.
-    """
-    up, down = len(design.LOADS), depth.shape[1]
-    first = np.concatenate(([0], np.cumsum(np.where(unloaded, down, 0)))).astype(np.int64)
-    before = 2 + (np.flatnonzero(unloaded) + 1) * up
-    row = np.repeat(before, down) + np.arange(depth.size)
-    return UnloadingReadings(first, np.tile(design.LOADS[-2::-1], len(depth)), depth.ravel(), row.astype(np.int64))
-
-
 def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:
     """Draw the shear tests, and the true S_f (N/m²) of each."""
-    beside = [site.snow_density for site in design.PENETRATION_SITES for _ in range(site.spots)]
-    alone = [site.snow_density for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
-    centre = np.array(beside + alone)
+    beside = [(site, index) for site in design.PENETRATION_SITES for index in range(site.spots)]
+    alone = [site for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
+    centre = np.array([site.snow_density for site in (*(site for site, _ in beside), *alone)])
     further = np.rint(_normal_within(generator, centre, design.SHEAR_DENSITY_SD, design.SHEAR_DENSITY_RANGE))
     count = design.HARD_TESTS + design.SOFT_TESTS + further.size
     place_in_range = generator.uniform(size=count)
@@ -134,10 +151,24 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
     reachable = design.MAXIMUM_MOMENT / (stress * design.PLATE_LENGTH * design.LEVER_ARM)
     depth = low + place_in_range * (np.minimum(high, reachable) - low)
     moment = np.maximum(stress * depth * design.PLATE_LENGTH * lever_arm + moment_error, 0.0)
-    own_density: FloatArray = np.concatenate([np.full(count - further.size, np.nan), further])
-    return _shear_tests(
-        angle, _round_to_gauge(depth, noise), np.round(moment, 2).astype(np.float64), own_density
-    ), stress
+    varied = [(design.HARD_SITE, "")] * design.HARD_TESTS + [(design.SOFT_SITE, "")] * design.SOFT_TESTS
+    paired = [(site.name, _spot_name(site, index)) for site, index in beside]
+    places = varied + paired + [(site.name, "") for site in alone]
+    tests = ShearTests(
+        experiment=_numbered_names("S", count),
+        site=tuple(site for site, _ in places),
+        plate=(design.PLATE,) * count,
+        spot=tuple(spot for _, spot in places),
+        edge_angle=angle,
+        penetration_depth=_round_to_gauge(depth, noise),
+        lever_arm=np.full(count, design.LEVER_ARM),
+        moment=np.round(moment, 2).astype(np.float64),
+        snow_density=np.concatenate([np.full(count - further.size, np.nan), further]),
+        drop_cone_depth=np.full(count, np.nan),
+        cancelled=("",) * count,
+        row=_row_numbers(count),
+    )
+    return tests, stress
 
 
 def add_creep(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
@@ -248,44 +279,3 @@ def _row_numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
 
 def _spot_name(site: design.Site, index: int) -> str:
     return f"{site.name[-1]}{index + 1:02d}" if index < site.spots else ""
-
-
-def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> PenetrationTests:
-    count, steps = edge_angle.size, len(design.LOADS)
-    sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.tests)]
-    return PenetrationTests(
-        experiment=_numbered_names("P", count),
-        site=tuple(site.name for site, _ in sites),
-        tool=(design.TOOL,) * count,
-        spot=tuple(_spot_name(site, index) for site, index in sites),
-        edge_angle=edge_angle,
-        snow_density=np.full(count, np.nan),
-        drop_cone_depth=np.full(count, np.nan),
-        cancelled=("",) * count,
-        first=np.arange(0, (count + 1) * steps, steps, dtype=np.int64),
-        load=np.tile(design.LOADS, count),
-        penetration_depth=depth,
-        row=_row_numbers(count * steps),
-    )
-
-
-def _shear_tests(angle: FloatArray, depth: FloatArray, moment: FloatArray, density: FloatArray) -> ShearTests:
-    count = angle.size
-    varied = [(design.HARD_SITE, "")] * design.HARD_TESTS + [(design.SOFT_SITE, "")] * design.SOFT_TESTS
-    beside = [(site.name, _spot_name(site, index)) for site in design.PENETRATION_SITES for index in range(site.spots)]
-    alone = [(site.name, "") for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
-    places = varied + beside + alone
-    return ShearTests(
-        experiment=_numbered_names("S", count),
-        site=tuple(site for site, _ in places),
-        plate=(design.PLATE,) * count,
-        spot=tuple(spot for _, spot in places),
-        edge_angle=angle,
-        penetration_depth=depth,
-        lever_arm=np.full(count, design.LEVER_ARM),
-        moment=moment,
-        snow_density=density,
-        drop_cone_depth=np.full(count, np.nan),
-        cancelled=("",) * count,
-        row=_row_numbers(count),
-    )

@@ -93,7 +93,7 @@ def _stored_table(files: RawFiles, form: TableForm) -> StoredTable | None:
     if table is None:
         return None
     columns = tuple(dict.fromkeys((*table.header.position, "status")))
-    conversions = {column: size for column, size in table.units.conversions.items() if size.changes}
+    conversions = {column: size for column, size in table.conversions.items() if size.changes}
     return StoredTable(form, columns, tests, conversions)
 
 

@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 from .c3d import read_c3d, write_c3d
-from .markers import BootMarkers, Markers, boots_of_markers, boots_text, read_trc, write_trc
-from .table import MotionTable, read_motion, write_motion
+from .motion_text import (
+    BootMarkers,
+    Markers,
+    MotionTable,
+    boots_of_markers,
+    boots_text,
+    read_motion,
+    read_trc,
+    write_motion,
+    write_trc,
+)
 
 __all__ = [
     "BootMarkers",

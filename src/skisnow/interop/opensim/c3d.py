@@ -20,8 +20,7 @@ from ..._support.errors import OutputError, ParameterError
 from ..._support.messages import Message
 from ..._support.staging import require_ending, write_file
 from ..._support.user_files import ContentError, plain_bytes
-from .markers import METRES, Markers
-from .table import MOST_BYTES, MotionTable
+from .motion_text import METRES, MOST_BYTES, Markers, MotionTable
 
 ENDING: Final = ".c3d"
 WRITTEN: Final = "mm"
