@@ -22,12 +22,16 @@ class SeriesCorrections:
 
     view, readings: table, and fields of the shown series by step.
     redraw: function that draws the stored series; unstored texts stay in their fields.
+    column: column of the fields.
     """
 
-    def __init__(self, view: TableView, readings: Mapping[Step, ReadingField], redraw: Callable[[], object]) -> None:
+    def __init__(
+        self, view: TableView, readings: Mapping[Step, ReadingField], redraw: Callable[[], object], column: str = DEPTH
+    ) -> None:
         self._view = view
         self._readings = readings
         self._redraw = redraw
+        self._column = column
         self._asked: dict[Step, str] = {}
 
     def begin(self, name: str, place: ui.element) -> None:
@@ -64,9 +68,9 @@ class SeriesCorrections:
         """
         changed = self._changed()
         cells = {
-            step: checked_fields(self._view.form, {"depth_mm": reading.depth}) for step, reading in changed.items()
+            step: checked_fields(self._view.form, {self._column: reading.depth}) for step, reading in changed.items()
         }
-        depths = {step: row["depth_mm"] for step, row in cells.items() if row is not None}
+        depths = {step: row[self._column] for step, row in cells.items() if row is not None}
         if len(depths) < len(changed):
             if is_said:
                 self._view.say(Message("Not corrected:"), "bad", faults(reading.depth for reading in changed.values()))
@@ -74,10 +78,40 @@ class SeriesCorrections:
         if self._asked == depths and not focus:  # Enter, and then the field was left: one question is enough
             return True
         self._asked = depths
-        _ask_corrections(self._view, self._name, DEPTH, depths, self._readings, self._place, self._redraw, focus=focus)
+        test = self._test
+        lines = [
+            change_words(step.field_name(self._column), stored_depth(test.row_under(*step), self._column), text)
+            for step, text in depths.items()
+        ]
+        act = (Message("Correct it"), partial(self._correct, depths))
+        ask_reason(self._place, lines, act, usual=USUAL_REASON, leave=self._leave, focus=focus)
         if is_said:
             self._view.say(ASKED, "")
         return True
+
+    def store(self, depths: Mapping[Step, str], why: str, said: str = CORRECTED) -> bool:
+        """Store depths as corrections; False after the first rejected one."""
+        for step, depth in depths.items():
+            test = self._test
+            row = test.row_under(*step)
+            if row is None or not self._view.correct(test, row.entered.sequence, {self._column: depth}, why, said=said):
+                return False
+        return True
+
+    def _correct(self, depths: Mapping[Step, str], why: str) -> bool:
+        is_stored = self.store(depths, why)
+        if is_stored:
+            self._redraw()
+        return is_stored
+
+    def _leave(self) -> None:
+        """Put the stored depths back into their fields."""
+        for step, reading in self._readings.items():
+            row = self._test.row_under(*step)
+            if row is not None and reading.differs(row):
+                reading.restore(row)
+        self._view.say(LEFT_AS_IT_WAS)
+        self._redraw()
 
     def drop(self, step: Step) -> None:
         """Remove a reading from the question if its stored depth was typed again."""
@@ -91,46 +125,6 @@ class SeriesCorrections:
             self._view.say(LEFT_AS_IT_WAS)
 
 
-def _ask_corrections(
-    view: TableView, name: str, column: str, depths: Mapping[Step, str], fields: Mapping[Step, ReadingField],
-    place: ui.element, redraw: Callable[[], object], *, focus: bool = True,
-) -> None:  # fmt: skip
-    """Ask for the reason of changed depths of a series; fields get the stored depths if it is not given."""
-    test = view.test(name)
-
-    def correct(why: str) -> bool:
-        is_stored = _store_corrections(view, name, column, depths, why)
-        if is_stored:
-            redraw()
-        return is_stored
-
-    def leave() -> None:
-        for step, reading in fields.items():
-            row = view.test(name).row_under(*step)
-            if row is not None and reading.differs(row):
-                reading.restore(row)
-        view.say(LEFT_AS_IT_WAS)
-        redraw()
-
-    lines = [
-        change_words(step.field_name(column), stored_depth(test.row_under(*step), column), text)
-        for step, text in depths.items()
-    ]
-    ask_reason(place, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=leave, focus=focus)
-
-
-def _store_corrections(
-    view: TableView, name: str, column: str, depths: Mapping[Step, str], why: str, said: str = CORRECTED
-) -> bool:
-    """Store depths of a series as corrections; False after the first rejected one."""
-    for step, depth in depths.items():
-        test = view.test(name)
-        row = test.row_under(*step)
-        if row is None or not view.correct(test, row.entered.sequence, {column: depth}, why, said=said):
-            return False
-    return True
-
-
 class DepthsAfterWaiting:
     """Fields of the depths after waiting, one for each load of a series."""
 
@@ -139,6 +133,7 @@ class DepthsAfterWaiting:
         self._name = name
         self._shown = shown
         self._fields: dict[Step, ReadingField] = {}
+        self._corrections = SeriesCorrections(view, self._fields, shown, AFTER)
 
     @property
     def unstored(self) -> dict[Step, str]:
@@ -151,23 +146,24 @@ class DepthsAfterWaiting:
 
     def draw(self, steps: Sequence[Step], unstored: dict[Step, str], ask: ui.element) -> None:
         """Draw the fields, folded without a depth."""
+        self._corrections.begin(self._name, ask)
         closed = bool(self._view.test(self._name).cancelled)
         is_open = any(stored_depth(self._row(step), AFTER) for step in steps) or bool(unstored)
         with (
             folded(Message("Depths read once more after waiting"), is_open=is_open),
-            form("readings", sends=lambda: self._store(ask)),
+            form("readings", sends=self._store),
         ):
             for step in steps:
                 stored = partial(self._row, step)
                 self._fields[step] = add_reading_field(step, unstored.get(step), stored, column=AFTER, closed=closed)
             if not closed:
-                asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
+                asking_button(Message("Store what was read after waiting"), self._store)
 
     def focus(self) -> None:
         """Put the focus on the first unstored field."""
         self._fields[next(iter(self.unstored))].depth.run_method("focus")
 
-    def _store(self, ask: ui.element) -> bool:
+    def _store(self) -> bool:
         """Store new depths, and ask for the reason of changed ones; False if nothing is stored or asked."""
         depths = self._valid_changes()
         if depths is None:
@@ -179,13 +175,10 @@ class DepthsAfterWaiting:
             for step, text in new.items()
         ]
         stored = Message("Stored after waiting: {listed}.", listed=listed)
-        if not _store_corrections(self._view, self._name, AFTER, new, WAITED, stored):
+        if not self._corrections.store(new, WAITED, stored):
             return False
         if others:
-            fields = {step: self._fields[step] for step in others}
-            _ask_corrections(self._view, self._name, AFTER, others, fields, ask, self._shown)
-            if not new:
-                self._view.say(ASKED, "")
+            self._corrections.ask(focus=True, is_said=not new)
         elif new:
             self._shown()
         else:
