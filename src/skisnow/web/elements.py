@@ -34,9 +34,10 @@ FIRST: Final = "(event) => { if (event.detail < 2) emit(kept.once()); }"
 
 def field(
     label: str, value: str = "", *, numeric: bool = False, wide: bool = False, optional: bool = False
-) -> TypedField:
+) -> ui.input:
     """Text field with its label above it; the Enter key skips an optional one."""
-    made = TypedField(label, value=value).props("outlined stack-label autocomplete=off")
+    made = ui.input(said(label), value=value).props("outlined stack-label autocomplete=off")
+    _show_symbols(made, label)
     made.classes("field wide" if wide else "field")
     if numeric:
         made.props("inputmode=decimal")
@@ -91,14 +92,6 @@ class Words(ui.label):
 
 _SUBSCRIPT: Final = r'<i>\1</i><span class="under">_</span><sub>\2</sub>'
 """The underscore has no width; it is there for copied text and screen readers."""
-
-
-class TypedField(ui.input):
-    """Text field of one line with a label in the language of the page."""
-
-    def __init__(self, label: str = "", *, value: str = "") -> None:
-        super().__init__(said(label) or None, value=value)
-        _show_symbols(self, label)
 
 
 class Outcome(Words):

@@ -22,12 +22,12 @@ from ..ski.ski_file import Sources
 from ..snow import SnowProperties, published_names, published_snow
 from .campaign_analysis import Choice, Refusal, analyse_files
 from .edit_session import EditSession
-from .elements import TypedField, Words, choice, error_sentence, field, named, option_texts, sentence
+from .elements import Words, choice, error_sentence, field, named, option_texts, sentence
 from .settings import Lab
 from .transfer import files_in_memory
 from .words import estimate_words, number_text, plain_number, replaced, said
 
-InputField: TypeAlias = TypedField | ui.select | ui.switch
+InputField: TypeAlias = ui.input | ui.select | ui.switch
 
 ON: Final = "true"
 OFF: Final = "false"

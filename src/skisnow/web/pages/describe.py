@@ -16,7 +16,7 @@ from ...campaign.store import Journals, NewEntry, OvertakenError
 from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import description_text
 from ..edit_session import EditSession
-from ..elements import StatusLine, TypedField, choice, field, heading, page_frame, sentence
+from ..elements import StatusLine, choice, field, heading, page_frame, sentence
 from ..page_requests import asking_button, current_request, entry_address, form, go_on, required_id, row_button
 from ..settings import Lab
 from ..words import language_of, number_text, said, typed_number
@@ -174,7 +174,7 @@ class EntryRows:
 
     def __init__(self, title: str, kind: str, entries: Any) -> None:
         self.kind = kind
-        self._rows: list[tuple[TypedField, ui.select | None, dict[str, TypedField]]] = []
+        self._rows: list[tuple[ui.input, ui.select | None, dict[str, ui.input]]] = []
         heading(title)
         self._place = ui.element("div").props(f"data-rows={kind}")
         for entry in list(entries) or [dict[str, Any]()]:
@@ -230,7 +230,7 @@ class EntryRows:
         return entries
 
 
-def _show_lengths(shape: ui.select, lengths: dict[str, TypedField]) -> None:
+def _show_lengths(shape: ui.select, lengths: dict[str, ui.input]) -> None:
     for key, length in lengths.items():
         length.set_visibility(key in SHAPES[shape.value].lengths)
 
