@@ -22,7 +22,7 @@ ROWS_OF_A_BLOCK: Final = 1000
 
 
 class TableRows(LazySequence):
-    """Rows in their order, compressed in blocks: a million rows of carved turns take about 100 MB.
+    """Rows in their order, compressed in blocks: a million rows of carved turns take about 150 MB.
 
     columns: names of the values of a row.
     rows: the values of each row: numbers, texts, switches, lists of numbers, or None.

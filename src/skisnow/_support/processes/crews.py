@@ -68,7 +68,7 @@ class Crew:
         return max(1, self._size())
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
-        """Hand out a chunk; a process that starts with it ignores Ctrl-C, which is for the parent alone."""
+        """Hand out a chunk; a process that starts with it ignores Ctrl-C, which only the parent handles."""
         with interrupts_ignored():
             return self._executor.submit(self._compute, points)
 
