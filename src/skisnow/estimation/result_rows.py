@@ -94,7 +94,7 @@ Columns: TypeAlias = Mapping[str, Sequence[Any] | npt.NDArray[Any]]
 
 
 def column_rows(columns: Columns) -> Rows:
-    """One row for each entry of the columns: lists, numbers (m,) or intervals (m, 2); None for what is not finite."""
+    """One row for each entry of the columns: lists, numbers (m,) or intervals (m, 2); None if not finite."""
     keys, listed = tuple(columns), [_listed(values) for values in columns.values()]
     return Rows(dict(zip(keys, values, strict=True)) for values in zip(*listed, strict=True))
 
