@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -247,6 +248,12 @@ class Searched:
         """Windows, one after another."""
         names = [text.partition(":")[0] for text in self.told]
         return [name for i, name in enumerate(names) if i == 0 or name != names[i - 1]]
+
+
+def test_a_place_beyond_its_range_by_rounding_is_a_line() -> None:
+    made: Any = SimpleNamespace(done=[])
+    batches = Windows(made, "cma", 1, None, 0.15, 0.0, 1, print, 8, 1, 0, 3)._make_batches(BEGUN, 0, 8, 8)
+    assert batches.point_of(np.full(24, 1.0 + 1e-15)).line.turns == batches.point_of(np.ones(24)).line.turns
 
 
 def test_a_window_sees_what_comes_after_it() -> None:
