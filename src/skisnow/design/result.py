@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -133,18 +134,25 @@ class Design(Shown):
 
         Raises OutputError: a file cannot be written.
         """
-        folder, names = Path(folder), ("ski.toml", "ski-rounded.toml", "table.csv", "design.json")
-        prepare_folder(folder)
         text = io.StringIO()
         table = csv.DictWriter(text, DesignRow.__slots__, lineterminator="\n")
         table.writeheader()
         table.writerows({k: "" if v is None else v for k, v in asdict(row).items()} for row in self.rows)
         values = json.dumps(self.as_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-        contents = (keys_text(self.keys), keys_text(self.rounded_keys), text.getvalue(), values)
-        with staged(folder, last=names[-1]) as stage:
-            for name, content in zip(names, contents, strict=True):
-                write_file(stage.path / name, content)
-        return tuple(folder / name for name in names)
+        contents = {"ski.toml": keys_text(self.keys), "ski-rounded.toml": keys_text(self.rounded_keys)}
+        return write_files(Path(folder), contents | {"table.csv": text.getvalue(), "design.json": values})
+
+
+def write_files(folder: Path, contents: Mapping[str, str]) -> tuple[Path, ...]:
+    """Write texts by their file names, the last one last, and return the paths.
+
+    Raises OutputError: a file cannot be written.
+    """
+    prepare_folder(folder)
+    with staged(folder, last=[*contents][-1]) as stage:
+        for name, content in contents.items():
+            write_file(stage.path / name, content)
+    return tuple(folder / name for name in contents)
 
 
 def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Design:

@@ -12,10 +12,9 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
-from .._support.staging import prepare_folder, staged, write_file
 from .descent import Descent
 from .evaluation import REACHED, Evaluator, Search
-from .result import Design, Start, design_of
+from .result import Design, Start, design_of, write_files
 from .task import DesignTask, Goal, design_task, read_design
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -169,15 +168,9 @@ def write_front(front: Sequence[FrontPoint], folder: Path) -> tuple[Path, ...]:
     rows += [
         [f"{n:.9g}" for n in (point.first_percent, point.second_percent, *point.values.values())] for point in front
     ]
-    contents = {
-        "front.csv": "".join(f"{','.join(row)}\n" for row in rows),
-        "front.json": json.dumps([asdict(point) for point in front], indent=1) + "\n",
-    }
-    prepare_folder(folder)
-    with staged(folder, last="front.json") as stage:
-        for name, content in contents.items():
-            write_file(stage.path / name, content)
-    return tuple(folder / name for name in contents)
+    table = "".join(f"{','.join(row)}\n" for row in rows)
+    values = json.dumps([asdict(point) for point in front], indent=1) + "\n"
+    return write_files(folder, {"front.csv": table, "front.json": values})
 
 
 def _limit(goal: Goal, allowed: float, side: float) -> Goal:

@@ -24,11 +24,19 @@ LEAST_LOAD: Final = 50.0
 """Load (N) of both skis above which there is a centre of pressure (modelling assumption)."""
 
 
+def boots_of(run: Run) -> BootHistory:
+    """The boots of a run.
+
+    Raises ParameterError: they are not known.
+    """
+    if run.boots is None:
+        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate").tag("no_data")
+    return run.boots
+
+
 def balance_of(run: Run) -> BalanceHistory:
     """Lean of the body over the run."""
-    boots = run.boots
-    if boots is None:
-        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate").tag("no_data")
+    boots = boots_of(run)
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     ahead = boots.axes[:, :, 0].mean(axis=1)
     ahead = ahead - np.einsum("na,na->n", ahead, normal)[:, None] * normal
@@ -37,7 +45,7 @@ def balance_of(run: Run) -> BalanceHistory:
     centre = boots.centre_of_mass - boots.place.mean(axis=1)
     aside, up = (np.einsum("na,na->n", centre, axis) for axis in (left, normal))
     load = np.einsum("nka,na->nk", boots.force, normal)
-    pressure = _pressure(run, ahead, load.sum(axis=1))
+    pressure = _pressure(boots, ahead, load.sum(axis=1))
     lean = np.arctan2(aside, up)
     balanced, rolling = _balanced(run, normal, up)
     return BalanceHistory(
@@ -52,10 +60,8 @@ def balance_of(run: Run) -> BalanceHistory:
     )
 
 
-def _pressure(run: Run, ahead: FloatArray, load: FloatArray) -> FloatArray:
+def _pressure(boots: BootHistory, ahead: FloatArray, load: FloatArray) -> FloatArray:
     """Centre of pressure from the middle of the boots, to the left (m)."""
-    boots = run.boots
-    assert boots is not None
     arm = boots.place - boots.place.mean(axis=1, keepdims=True)
     moment = (np.cross(arm, boots.force) + boots.moment).sum(axis=1)
     roll = np.einsum("na,na->n", moment, ahead)
@@ -68,8 +74,7 @@ def _balanced(run: Run, normal: FloatArray, up: FloatArray) -> tuple[FloatArray,
 
     normal, up: (n, 3) normal of the snow, and (n,) height of the centre of mass above it (m).
     """
-    boots, slope, gravity = run.boots, run.scenario.slope, run.scenario.gravity
-    assert boots is not None
+    boots, slope, gravity = boots_of(run), run.scenario.slope, run.scenario.gravity
     if len(run.time) < 5:
         return np.full(len(run.time), np.nan), np.full(len(run.time), np.nan)
     velocity = np.gradient(boots.centre_of_mass, run.time, axis=0)

@@ -11,13 +11,12 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.errors import ParameterError
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import require_ending, write_file
 from .._support.units import DEGREE, MM
 from ..scenario.boots import ANGLES, OF_SLOPE, SIDES
-from .moving_boots import BootHistory
 from .run import Run
+from .run_forces import boots_of
 
 COLUMNS: Final = (
     "time_s", "x_m", "y_m", "z_m", "speed_m_per_s", "heading_deg", "turn_radius_m", "left_x_m", "left_y_m",
@@ -66,7 +65,7 @@ _TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0
 
 def boots_columns(run: Run) -> dict[str, FloatArray]:
     """Columns by name, (n,) each: time, and of each boot pose, forces and moments in the slope's and its own axes."""
-    boots = _boot_history(run)
+    boots = boots_of(run)
     columns = {"time_s": run.time}
     for k, side in enumerate(SIDES):
         values = {name: boots.place[:, k, axis] for axis, name in enumerate(OF_SLOPE)}
@@ -88,7 +87,7 @@ def opensim_columns(run: Run) -> dict[str, FloatArray]:
     """
     columns = boots_columns(run)
     columns = {"time": columns.pop("time_s"), **columns}
-    boots = _boot_history(run)
+    boots = boots_of(run)
     for k, side in enumerate(SIDES):
         for name, values in (("force_v", boots.force), ("force_p", boots.place), ("moment_m", boots.moment)):
             turned = values[:, k] @ _TO_OPENSIM.T
@@ -145,9 +144,3 @@ def write_boots(run: Run, path: str | Path) -> None:
     write_file(path, boots_text(run, ending, name=path.stem))
     if ending != ".csv":
         write_file(path.with_name(f"{path.stem}_external_loads.xml"), external_loads(path.name))
-
-
-def _boot_history(run: Run) -> BootHistory:
-    if run.boots is None:
-        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate").tag("no_data")
-    return run.boots
