@@ -222,11 +222,10 @@ def _penetration_problems(
         else:
             reading = end - 1 if code == "rebound_unresolved" else int(largest[index])
         load, depth = readings.load, readings.penetration_depth
-        after = tests.depth_after if code == "creeps" else None
         value = {"cancelled": tests.cancelled[index], "too_few_loads": str(end - first)}.get(code)
         if value is None and code in bad:
-            depth_now = (depth if after is None else after)[reading] / MM
-            value = _number(load[reading] if _COLUMNS.get(code) == "load_N" else depth_now)
+            lengths = tests.depth_after if code == "creeps" and tests.depth_after is not None else depth
+            value = _number(load[reading] if _COLUMNS.get(code) == "load_N" else lengths[reading] / MM)
         yield _flag(
             campaign,
             code,

@@ -30,6 +30,8 @@ _NAMES: Final = (
     f'xmlns:caaml="http://caaml.org/Schemas/SnowProfileIACS/v{VERSION}" xmlns:gml="http://www.opengis.net/gml" '
     f'xmlns:skisnow="{OWN_NAMESPACE}"'
 )
+_CONTROL: Final = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML does not allow."""
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\d(T\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:\d\d)?)?")
 
 
@@ -173,12 +175,8 @@ def _nested(path: str, inner: str, **attributes: str) -> str:
 
 def _element_xml(name: str, text: str, *, uom: str | None = None) -> str:
     unit = "" if uom is None else f" uom={quoteattr(uom)}"
-    return f"<caaml:{name}{unit}>{escape(_printable(text))}</caaml:{name}>"
-
-
-def _printable(text: str) -> str:
-    """Text without control characters, which XML does not allow."""
-    return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", " ", text)
+    allowed = _CONTROL.sub(" ", text)
+    return f"<caaml:{name}{unit}>{escape(allowed)}</caaml:{name}>"
 
 
 def _cm_xml(name: str, length: float) -> str:

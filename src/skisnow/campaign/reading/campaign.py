@@ -10,9 +10,11 @@ from typing import Final
 from ..._support.csv_text import decode
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
+from ..._support.units import MM
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
 from ..records import Campaign
 from ..smet import CampaignWeather
+from ..snow_micro_pen import SnowMicroPenRecordings
 from .campaign_file import CAMPAIGN_FILE, CampaignFile, Description, read_campaign_file
 from .campaign_files import (
     ENDING,
@@ -22,11 +24,10 @@ from .campaign_files import (
     RawFiles,
     campaign_weather,
     recording_contents,
-    snow_micro_pen_recordings,
 )
 from .columns import Table
 from .corrections import corrections_by_file
-from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests
+from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests, single_rows
 from .row_checks import check_rows
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
 from .tables import Cells, read_table, table_of_cells
@@ -259,7 +260,15 @@ def _require_valid(raw: _RawCampaign) -> Campaign:
     problems, described, tables = raw.sorted_problems(), raw.described, raw.tables
     if described is None or any(problem.severity == "error" for problem in problems):
         raise FieldDataError(problems)
-    folder, recorded, settings = raw.files.folder, tables.get(SNOW_MICRO_PEN.file), described.snow_micro_pen
+    folder, recordings = raw.files.folder, None
+    if (table := tables.get(SNOW_MICRO_PEN.file)) is not None:
+        recordings = SnowMicroPenRecordings(
+            **single_rows(table),
+            spot=table.names["spot"].cells(),
+            surface=table.numbers["surface_mm"] * MM,
+            contents=tuple(raw.recordings[name] for name in table.names["file"].cells()),
+            settings=described.snow_micro_pen,
+        )
     return Campaign(
         **{field.name: getattr(described, field.name) for field in fields(Description)}
         | {"name": described.name or folder.resolve().name},
@@ -273,6 +282,6 @@ def _require_valid(raw: _RawCampaign) -> Campaign:
         corrections=tuple(raw.applied),
         unread_files=raw.unread,
         places=raw.places,
-        snow_micro_pen=snow_micro_pen_recordings(recorded, raw.recordings, settings) if recorded is not None else None,
+        snow_micro_pen=recordings,
         weather=raw.weather,
     )

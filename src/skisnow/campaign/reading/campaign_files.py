@@ -12,14 +12,12 @@ from typing import Final, TypeVar
 from ..._support.csv_text import CsvText, UnreadableTextError, inspect_csv
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
-from ..._support.units import MM
 from ..problems import Problem, error, warning
 from ..smet import CampaignWeather, WeatherSettings, parse_smet
-from ..snow_micro_pen import SnowMicroPenRecordings, SnowMicroPenSettings, parse_snow_micro_pen
+from ..snow_micro_pen import parse_snow_micro_pen
 from .campaign_file import CAMPAIGN_FILE
 from .columns import Table
 from .corrections import RowCorrections
-from .experiments import single_rows
 from .headings import Headings
 from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN, TableForm
@@ -204,19 +202,6 @@ def _repeated_names(table: Table, column: str) -> list[Problem]:
             action = Message("Correct the cell, or remove one of the rows.")
             problems.append(table.error(row, "mixed_experiment", column, table.names[column][row], allowed, action))
     return problems
-
-
-def snow_micro_pen_recordings(
-    table: Table, contents: Mapping[str, bytes], settings: SnowMicroPenSettings
-) -> SnowMicroPenRecordings:
-    """Convert a valid table to recordings."""
-    return SnowMicroPenRecordings(
-        **single_rows(table),
-        spot=table.names["spot"].cells(),
-        surface=table.numbers["surface_mm"] * MM,
-        contents=tuple(contents[name] for name in table.names["file"].cells()),
-        settings=settings,
-    )
 
 
 def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeather | None:

@@ -73,26 +73,6 @@ _TEMPERATURES: Final = (
     Quantity("snow_temperature_C", "temperature of the snow", needed=False),
 )
 _DEPTH: Final = Quantity("depth_mm", "penetration depth", lowest=0.0)
-_DEPTH_AFTER: Final = Quantity(
-    "depth_after_mm", "depth read once more under the same load, after waiting: creep", lowest=0.0, needed=False
-)
-_TURNING_ANGLE: Final = Quantity(
-    "turning_angle_deg",
-    "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
-    lowest=-360.0,
-    highest=360.0,
-    needed=False,
-)
-_SAMPLE_DEPTH: Final = Quantity(
-    "sample_depth_mm", "depth of the sample's middle below the snow surface", lowest=0.0, needed=False
-)
-_SAMPLE_THICKNESS: Final = Quantity(
-    "sample_thickness_mm", "vertical extent of the sample", lowest=0.0, above=True, needed=False
-)
-_SURFACE: Final = Quantity(
-    "surface_mm", "where the snow begins, from the first sample; blank: estimated", lowest=0.0, needed=False
-)
-
 BRANCH: Final = "branch"
 """Column with the branch: a disc was added (loading) or removed (unloading)."""
 LOADING: Final = "loading"
@@ -110,7 +90,9 @@ PENETRATION: Final = TableForm(
         Quantity(_ANGLE, "above 60 a warning; disc and cylinder: 0", lowest=0.0, highest=90.0, below=True),
         Quantity("load_N", "load", lowest=0.0, above=True),
         _DEPTH,
-        _DEPTH_AFTER,
+        Quantity(
+            "depth_after_mm", "depth read once more under the same load, after waiting: creep", lowest=0.0, needed=False
+        ),
         _OPTIONAL_DENSITY,
         _OPTIONAL_DROP_CONE,
         *_TEMPERATURES,
@@ -127,7 +109,13 @@ SHEAR: Final = TableForm(
         _DEPTH,
         Quantity("lever_arm_mm", "lever arm", lowest=0.0, above=True),
         Quantity("moment_Nm", "moment", lowest=0.0),
-        _TURNING_ANGLE,
+        Quantity(
+            "turning_angle_deg",
+            "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
+            lowest=-360.0,
+            highest=360.0,
+            needed=False,
+        ),
         _OPTIONAL_DENSITY,
         _OPTIONAL_DROP_CONE,
         *_TEMPERATURES,
@@ -139,7 +127,13 @@ DENSITY: Final = TableForm(
     file="density.csv",
     key="sample",
     names=("sample", "site"),
-    numbers=(_DENSITY, _SAMPLE_DEPTH, _SAMPLE_THICKNESS, _OPTIONAL_DROP_CONE, *_TEMPERATURES),
+    numbers=(
+        _DENSITY,
+        Quantity("sample_depth_mm", "depth of the sample's middle below the snow surface", lowest=0.0, needed=False),
+        Quantity("sample_thickness_mm", "vertical extent of the sample", lowest=0.0, above=True, needed=False),
+        _OPTIONAL_DROP_CONE,
+        *_TEMPERATURES,
+    ),
     optional=("status",),
     further=("spot", "drop_cone_depth_mm", *_NOTES),
 )
@@ -155,7 +149,11 @@ SNOW_MICRO_PEN: Final = TableForm(
     file="snow_micro_pen.csv",
     key="recording",
     names=("recording", "site", "file"),
-    numbers=(_SURFACE,),
+    numbers=(
+        Quantity(
+            "surface_mm", "where the snow begins, from the first sample; blank: estimated", lowest=0.0, needed=False
+        ),
+    ),
     optional=("spot", "status"),
     further=_NOTES,
 )
