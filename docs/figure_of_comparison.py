@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from skisnow import compare, load_scenario, simulate
-from skisnow.report.figures.figure_files import write_figure
+from skisnow.report.figures.drawing import write_figure
 from skisnow.report.track.report import track_comparison
 from skisnow.simulation.run_tables import write_track
 from skisnow.track.read import read_track

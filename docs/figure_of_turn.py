@@ -10,7 +10,7 @@ from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
 
 from skisnow import load_scenario, simulate
-from skisnow.report.figures.figure_files import write_figure
+from skisnow.report.figures.drawing import write_figure
 from skisnow.report.figures.style import DOUBLE_MM, GREY, legend_below, new_figure
 from skisnow.report.run.time_figures import along_ski_map, highest
 from skisnow.report.run.track_figure import SKI_COLOURS, draw_plan, track_limits

@@ -14,7 +14,7 @@ from fewer_colours import write_fewer_colours
 from skisnow.carving.answer import answer_question, answers_dict
 from skisnow.carving.question import carve_question
 from skisnow.report.carving_figure import carved_skis
-from skisnow.report.figures.figure_files import write_figure
+from skisnow.report.figures.drawing import write_figure
 from skisnow.report.study_maps import grip_map, radius_map
 from skisnow.studies import read_study, run_study
 

@@ -21,7 +21,7 @@ from benchmarks.contrast.unknowns import design
 from fewer_colours import write_fewer_colours
 
 from skisnow import simulate
-from skisnow.report.figures.figure_files import write_figure
+from skisnow.report.figures.drawing import write_figure
 from skisnow.report.figures.style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:

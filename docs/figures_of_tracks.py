@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from skisnow.report.figures.figure_files import write_figure
+from skisnow.report.figures.drawing import write_figure
 from skisnow.report.figures.style import BLUE, DOUBLE_MM, GREY, PALE, VERMILLION, legend_below, new_figure
 from skisnow.report.track.figures import track_map
 from skisnow.track.curvature import TrackMotion, track_motion

@@ -110,7 +110,7 @@ def without_figures() -> Iterator[None]:
         each = svg.encode()
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
 
-    with patch("skisnow.report.figures.figure_files.render", empty):
+    with patch("skisnow.report.figures.drawing.render", empty):
         yield
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.messages import Message
-from skisnow.report.pair_verdicts import RADII, run_verdict, ski_verdict
+from skisnow.report.summaries import RADII, run_verdict, ski_verdict
 from skisnow.track.track import Track
 from tests.present import present
 

@@ -22,10 +22,10 @@ from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, local_axes, site_styles
 from skisnow.report.formatting import days_words, figure_text
-from skisnow.report.pair_verdicts import run_verdict
 from skisnow.report.race.figures import gap_drawings
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
+from skisnow.report.summaries import run_verdict
 from skisnow.report.table import Column, record_table, table_html
 from skisnow.report.track.page import comparison_page
 from skisnow.report.track.report import comparison_drawing, track_drawings

@@ -20,7 +20,7 @@ def leave_figures_empty() -> None:
     def empty(drawing: Drawing) -> Picture:
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, svg.encode())
 
-    patch("skisnow.report.figures.figure_files.render", empty).start()
+    patch("skisnow.report.figures.drawing.render", empty).start()
     patch("skisnow.web.campaign_analysis.drawing_svg", lambda _: svg).start()
 
 

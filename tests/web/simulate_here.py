@@ -14,5 +14,5 @@ def empty(drawing: Drawing) -> Picture:
 
 
 if __name__ == "__main__":
-    with patch("skisnow.report.figures.figure_files.render", empty):
+    with patch("skisnow.report.figures.drawing.render", empty):
         sys.exit(main())

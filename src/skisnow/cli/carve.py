@@ -109,7 +109,7 @@ def carve_ski(options: argparse.Namespace) -> int:
         answer["sensitivity"] = derivative
     if options.figure is not None:
         from ..report.carving_figure import carved_skis
-        from ..report.figures.figure_files import write_figure
+        from ..report.figures.drawing import write_figure
 
         write_figure(options.figure, lambda: carved_skis(result), language=options.language)
         print(f"Figure: {options.figure}", file=sys.stderr)
@@ -205,7 +205,7 @@ def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) 
     """Draw the initial ski and the design in the turn of the first condition."""
     from ..carving.answer import answer_question, answers_dict
     from ..report.carving_figure import carved_skis
-    from ..report.figures.figure_files import write_figure
+    from ..report.figures.drawing import write_figure
 
     answers = []
     for name, keys in ((design.before.name, design.before.keys), (design.ski.name, design.keys)):

@@ -51,7 +51,7 @@ def prepare_figure(place: Path | None) -> None:
     Raises ParameterError, OutputError: as `require_drawable`.
     """
     if place is not None:
-        from ..report.figures.figure_files import require_drawable
+        from ..report.figures.drawing import require_drawable
 
         require_drawable(place)
 

@@ -139,7 +139,7 @@ def _print_outcomes(place: Path, table: StudyTable) -> None:
 
 
 def _draw_figure(options: argparse.Namespace, table: StudyTable) -> None:
-    from ..report.figures.figure_files import write_figure
+    from ..report.figures.drawing import write_figure
     from ..report.study_maps import grip_map, radius_map
 
     draw = {"radius": radius_map, "grip": grip_map}[options.map]

@@ -216,7 +216,7 @@ def _compare_tracks(options: argparse.Namespace) -> tuple[Comparison, Message | 
     require_offsets(fit)
     with announced("reading the tracks and finding nearest places"):
         from ..comparison import compare_tracks
-        from ..report.pair_verdicts import read_compared, time_verdict
+        from ..report.summaries import read_compared, time_verdict
 
         measured = read_compared(options.measured)
         simulated = read_compared(options.simulated)
@@ -259,7 +259,7 @@ def _write_comparison(
 ) -> None:
     from .._support.messages import in_language
     from .._support.staging import staged, write_file
-    from ..report.figures.figure_files import write_pictures
+    from ..report.figures.drawing import write_pictures
     from ..report.formatting import json_text
     from ..report.race.folder import FILES, write_gaps
     from ..report.track.page import comparison_page

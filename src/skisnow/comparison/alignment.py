@@ -218,11 +218,12 @@ def _iterate(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
         if inside.mean() < LEAST_SHARE:
             return replace(motion, rms=math.inf)  # a beginning may be an answer among fewer places
         matrix, rest = _equations(path, local, nearest, inside, motion, start=start, heading=heading)
-        step, undetermined = _shortest_step(matrix, rest)
-        step = pace * step
+        left, values, right = np.linalg.svd(matrix, full_matrices=False)
+        determined = values > DETERMINED * math.sqrt(matrix.shape[0])  # the shortest least-squares step
+        step = pace * (right[determined].T @ ((left.T @ rest)[determined] / values[determined]))
         moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
         turned = float(step[-1]) / path.length if heading else 0.0
-        motion = Motion(motion.moved + moved, motion.turned + turned, undetermined)
+        motion = Motion(motion.moved + moved, motion.turned + turned, int((~determined).sum()))
         sizes.append(float(np.linalg.norm(step)) / path.length)
         to_and_fro = sizes[-1] >= min(sizes[:-_OSCILLATION], default=math.inf)
         if sizes[-1] < _SETTLED or (sizes[-1] < _ACCEPTED and to_and_fro):
@@ -280,7 +281,9 @@ def _heading_error(path: Path, measured: Polyline, motion: Motion, *, start: boo
     root = np.sqrt(np.repeat((steps[1:] + steps[:-1])[inside] / (2.0 * measured.length), dimensions))
     left, values, right = np.linalg.svd(root[:, None] * matrix, full_matrices=False)
     influence = root * (left @ (right[:, -1] / np.maximum(values, EXACTNESS)))
-    correlation = _correlation(rest.reshape(-1, dimensions))
+    squares, residuals = float((rest**2).sum()), rest.reshape(-1, dimensions)
+    neighbours = float((residuals[1:] * residuals[:-1]).sum()) / squares if squares > 0.0 else 0.0
+    correlation = min(max(neighbours, 0.0), 0.95)
     variance = float(rest @ rest) / freedom * float(influence @ influence)
     variance *= (1.0 + correlation) / (1.0 - correlation)
     half = float(stdtrit(freedom, 0.5 + CONFIDENCE / 2.0)) * math.sqrt(variance)
@@ -288,19 +291,6 @@ def _heading_error(path: Path, measured: Polyline, motion: Motion, *, start: boo
     return min((half + cut_turns) / path.length, math.pi)
 
 
-def _correlation(rest: FloatArray) -> float:
-    """Correlation of the residuals (n, d) of neighbouring points, from 0 to 0.95."""
-    squares = float((rest**2).sum())
-    return min(max(float((rest[1:] * rest[:-1]).sum()) / squares, 0.0), 0.95) if squares > 0.0 else 0.0
-
-
 def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:
     """Parts of vectors (n, d) perpendicular to the unit vectors ``along`` (n, d)."""
     return vectors - (vectors * along).sum(axis=1, keepdims=True) * along
-
-
-def _shortest_step(matrix: FloatArray, rest: FloatArray) -> tuple[FloatArray, int]:
-    """Shortest least-squares step, and the number of undetermined directions."""
-    left, values, right = np.linalg.svd(matrix, full_matrices=False)
-    determined = values > DETERMINED * math.sqrt(matrix.shape[0])
-    return right[determined].T @ ((left.T @ rest)[determined] / values[determined]), int((~determined).sum())

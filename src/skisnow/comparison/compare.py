@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Final, get_args
 
@@ -116,7 +116,7 @@ def compare_tracks(
     lines = track_polyline(laid.simulated, dimensions=dimensions), track_polyline(laid.measured, dimensions=dimensions)
     clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
-    warnings = [*_track_warnings(simulated, measured, dimensions), *laid.warnings]
+    warnings = [*_track_warnings(simulated, dimensions), *_track_warnings(measured, dimensions), *laid.warnings]
     if not together and not placed:
         warnings.append(f"{_frames_sentence(simulated, measured)}; their coordinates are compared as they stand")
     plain = _compare_lines(lines, clock, names, seen)
@@ -135,7 +135,7 @@ def compare_tracks(
         plain,
         fitted=fitted,
         axes=measured.axes,
-        warnings=(*warnings, *_coverage_warnings(plain), *_ambiguity_warnings(plain)),
+        warnings=(*warnings, *_result_warnings(plain)),
         in_one_frame=together or placed,
         known_to=max(map(place_accuracy, (simulated, measured))) if known_to is None else known_to,
     )
@@ -192,14 +192,12 @@ def _make_distances(name: str, apart: OffsetSeries | None, otherwise: str, *, or
 
 def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Distances:
     reason = clock.reason or missing_time_reason(simulated, "simulated") or missing_time_reason(measured, "measured")
-    if reason:
-        return _make_distances("time", None, reason, origin=clock.origin)
-    apart = time_offsets(simulated, measured, later=clock.ahead)
-    if apart is None:
+    apart = None if reason else time_offsets(simulated, measured, later=clock.ahead)
+    if not reason and apart is None:
         begins = measured.time[0] + clock.ahead - simulated.time[0]
         reason = f"they are not on their way at one time (the measured one begins {begins:.6g} s later); {FIRST_POINTS}"
-    return _make_distances("time", apart, reason or "the measured track stands still while both are on their way",
-                      origin=clock.origin)  # fmt: skip
+    otherwise = reason or "the measured track stands still while both are on their way"
+    return _make_distances("time", apart, otherwise, origin=clock.origin)
 
 
 def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparison:
@@ -207,14 +205,17 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
     if fit & {"start", "heading"}:
         motion = fit_motion(simulated, plain.measured, start="start" in fit, heading="heading" in fit)
         simulated = motion.applied(simulated)
-    later = _fit_time(simulated, plain) - clock.ahead if "time" in fit else 0.0
-    origin = f"{clock.origin}, with the fitted offset" if "time" in fit else clock.origin
-    fitted_clock = Clock(clock.ahead + later, origin, None if "time" in fit else clock.reason)
+    later, fitted_clock = 0.0, clock
+    if "time" in fit:
+        reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
+        if reason:
+            raise ParameterError("{reason}; remove time from the fit").tag("no_times", reason=reason)
+        later = fit_time(simulated, plain.measured) - clock.ahead
+        fitted_clock = Clock(clock.ahead + later, f"{clock.origin}, with the fitted offset")
     moved_comparison = _compare_lines((simulated, plain.measured), fitted_clock, plain.names, plain.seen)
-    what = tuple(word for word in OFFSETS if word in fit)
     fitted = FittedOffsets(
-        what=what,
-        moved=tuple(float(value) for value in motion.moved),
+        what=tuple(word for word in OFFSETS if word in fit),
+        moved=tuple(motion.moved.tolist()),
         turned=motion.turned,
         later=later,
         undetermined=motion.undetermined,
@@ -224,14 +225,6 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
         turned_error=motion.turned_error,
     )
     return replace(moved_comparison, fitted=fitted)
-
-
-def _fit_time(simulated: Polyline, plain: Comparison) -> float:
-    """Time offset (s) that fits best; an error if a track has no place at each time."""
-    reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
-    if reason:
-        raise ParameterError("{reason}; remove time from the fit").tag("no_times", reason=reason)
-    return fit_time(simulated, plain.measured)
 
 
 def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str]) -> None:
@@ -245,17 +238,12 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
         ).tag("nothing_common", first=names[0], second=names[1], nearest=nearest / 1000.0, farthest=FARTHEST / 1000.0)
 
 
-def _track_warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
-    warnings = []
-    for track in (simulated, measured):
-        without = int((~compared_points(track, dimensions=dimensions)).sum())
-        if without:
-            flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "no place"
-            warnings.append(f"{track.name}: {without} of {len(track)} points are not compared ({flags})")
-        inexact = inexact_sentence(track.name, track.solution)
-        if inexact:
-            warnings.append(inexact)
-    return warnings
+def _track_warnings(track: Track, dimensions: int) -> Iterator[str]:
+    if without := int((~compared_points(track, dimensions=dimensions)).sum()):
+        flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "no place"
+        yield f"{track.name}: {without} of {len(track)} points are not compared ({flags})"
+    if inexact := inexact_sentence(track.name, track.solution):
+        yield inexact
 
 
 def _frames_sentence(simulated: Track, measured: Track) -> str:
@@ -271,39 +259,30 @@ def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Trac
     return f"laid on the map {slope}, x of {name} points {azimuth:.1f}° from north ({error})"
 
 
-def _coverage_warnings(comparison: Comparison) -> list[str]:
-    whole = comparison.measured.length
-    compared = {name: getattr(comparison, name).numbers for name in DEFINITIONS}
-    return [
-        f"{name.replace('_', ' ')}: only {numbers.compared:.4g} of the {whole:.4g} m of the measured track could be "
-        "compared"
-        for name, numbers in compared.items()
-        if numbers is not None and numbers.compared < MOST_COMPARED * whole
-    ]
-
-
-def _ambiguity_warnings(comparison: Comparison) -> list[str]:
-    """Warnings of a poorly determined heading, and of another place that fits about as well."""
-    fitted, warnings = comparison.fitted, []
-    if fitted is None:
-        return []
-    if fitted.turned_error is not None and fitted.turned_error > REPORTED_ERROR:
-        warnings.append(
-            f"the fitted heading is uncertain: ± {fitted.turned_error / DEGREE:.2g}° (95 %). Give the direction in "
-            "which the slope falls, or compare a longer stretch"
+def _result_warnings(comparison: Comparison) -> Iterator[str]:
+    """Warnings of a short compared part, of a poorly determined heading, of another place that fits about as well."""
+    whole, fitted = comparison.measured.length, comparison.fitted
+    for name in DEFINITIONS:
+        numbers = getattr(comparison, name).numbers
+        if numbers is not None and numbers.compared < MOST_COMPARED * whole:
+            part = f"only {numbers.compared:.4g} of the {whole:.4g} m of the measured track could be compared"
+            yield f"{name.replace('_', ' ')}: {part}"
+    error, rival = (None, None) if fitted is None else (fitted.turned_error, fitted.rival)
+    if error is not None and error > REPORTED_ERROR:
+        yield (
+            f"the fitted heading is uncertain: ± {error / DEGREE:.2g}° (95 %). Give the direction in which the slope "
+            "falls, or compare a longer stretch"
         )
-    if fitted.rival is not None:
-        rival = fitted.rival
+    if fitted is not None and rival is not None:
         other, chosen = (f"{value.turned / DEGREE:.0f}°" for value in (rival, fitted))
         there, here = (" and ".join(f"{value:.1f}" for value in one.moved[:2]) for one in (rival, fitted))
         rms, own = amount(rival.rms, "m"), amount(fitted.rms, "m")
-        interval = " The heading has no interval." if fitted.turned_error is None else ""
-        warnings.append(
+        interval = " The heading has no interval." if error is None else ""
+        yield (
             f"the place of the simulated track is uncertain: moved by {there} m and turned by {other}, instead of "
             f"{here} m and {chosen}, it is about as near (rms {rms} instead of {own}, {100 * rival.share:.0f} % "
             f"compared).{interval} Give the direction in which the slope falls, or compare a longer stretch"
         )
-    return warnings
 
 
 def place_accuracy(track: Track) -> float:

@@ -150,11 +150,20 @@ def assemble_replay(
     with np.errstate(divide="ignore"):
         curvature = 1.0 / arrays["turn_radius"]
     slope, course = setting.slope, setting.course
+    profile = None
+    if isinstance(slope, Profile):  # points every 0.25 m
+        start, end = slope.ends
+        x = np.linspace(start, end, max(2, int(np.ceil((end - start) / 0.25)) + 1))
+        profile = np.column_stack([x, slope.heights(x)])
+    if track is not None:  # the height of the snow instead of missing heights
+        points = np.array(track.place, dtype=float)
+        points[:, 2] = np.where(np.isfinite(points[:, 2]), points[:, 2], _heights(slope, points))
+        track = replace(track, place=points)
     return Replay(
         title=title,
         facts=setting.facts,
         tilt=slope.angle if isinstance(slope, Plane) else 0.0,
-        profile=_profile(slope) if isinstance(slope, Profile) else None,
+        profile=profile,
         terrain=_terrain(slope, arrays["place"]) if isinstance(slope, Terrain) else None,
         centre_of_mass_height=setting.centre_of_mass_height,
         time=arrays["time"],
@@ -166,7 +175,7 @@ def assemble_replay(
         depth=arrays["depth"],
         skis=_skis_of_arrays(arrays, setting),
         groove=_groove(arrays, setting.line_spacing),
-        track=track and _on_the_snow(track, slope),
+        track=track,
         gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
         gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting),
         skier=None if setting.body is None or setting.boots is None else _skier(arrays, *setting.body, setting.boots),
@@ -197,13 +206,6 @@ def _skier(arrays: Mapping[str, FloatArray], height: float, weight: float, boots
     axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
     joints = drawn_joints(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
     return ReplaySkier(height=height, weight=weight, joints=joints)
-
-
-def _profile(slope: Profile) -> FloatArray:
-    """Points of the slope every 0.25 m."""
-    start, end = slope.ends
-    x = np.linspace(start, end, max(2, int(np.ceil((end - start) / 0.25)) + 1))
-    return np.column_stack([x, slope.heights(x)])
 
 
 def _terrain(slope: Terrain, path: FloatArray) -> ReplayTerrain:
@@ -239,13 +241,6 @@ def _heights(slope: Slope, place: FloatArray) -> FloatArray:
     if isinstance(slope, Terrain):
         return slope.surface.heights(place[:, 0], place[:, 1])
     return np.zeros(len(place)) if isinstance(slope, Plane) else slope.heights(place[:, 0])
-
-
-def _on_the_snow(track: ReplayTrack, slope: Slope) -> ReplayTrack:
-    """Track with the height of the snow instead of missing heights."""
-    place = np.array(track.place, dtype=float)
-    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place))
-    return replace(track, place=place)
 
 
 def _skis_of_arrays(arrays: Mapping[str, FloatArray], setting: Setting) -> ReplaySkis:

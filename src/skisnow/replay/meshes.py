@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import struct
+from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -64,8 +65,8 @@ def _force_colours(replay: Replay, force: FloatArray) -> FloatArray:
 
 def _ski_with_walls(base: FloatArray, top: FloatArray, face: FloatArray) -> Mesh:
     """A ski from its base and top (station, left or right, 3) and its faces' colours (station, 3)."""
-    ring = [top[:, 0], top[:, 1], base[:, 1], base[:, 0]]  # twice: for the faces and for the walls
-    corners = np.stack([ring[0], ring[1], ring[2], ring[3], ring[3], ring[0], ring[1], ring[2]], axis=1)
+    ring = [top[:, 0], top[:, 1], base[:, 1], base[:, 0]]
+    corners = np.stack([*ring, ring[3], *ring[:3]], axis=1)  # twice: for the faces and for the walls
     colours = np.empty_like(corners)
     colours[:, :4], colours[:, 4:] = face[:, None], linear_light(COLOURS["side"])
     pairs = [(0, 1), (2, 3), (4, 5), (6, 7)]
@@ -254,13 +255,11 @@ class Glb:
     """Builder of a model; each method returns the index of the added element."""
 
     content: bytearray = field(default_factory=bytearray)
-    views: list[dict[str, Any]] = field(default_factory=list)
-    accessors: list[dict[str, Any]] = field(default_factory=list)
-    meshes: list[dict[str, Any]] = field(default_factory=list)
-    nodes: list[dict[str, Any]] = field(default_factory=list)
-    skins: list[dict[str, Any]] = field(default_factory=list)
-    channels: list[dict[str, Any]] = field(default_factory=list)
-    samplers: list[dict[str, Any]] = field(default_factory=list)
+    elements: dict[str, list[dict[str, Any]]] = field(default_factory=lambda: defaultdict(list))
+
+    def _add(self, kind: str, element: dict[str, Any]) -> int:
+        self.elements[kind].append(element)
+        return len(self.elements[kind]) - 1
 
     def array(
         self, values: npt.ArrayLike, *, kind: str = FLOAT, bounds: bool = False, target: int | None = None
@@ -269,17 +268,16 @@ class Glb:
         numbers = np.ascontiguousarray(values, dtype=kind)
         self.content += b"\0" * (-len(self.content) % 4)  # each begins at a multiple of its component's size, 3.6.2.4
         view = {"buffer": 0, "byteOffset": len(self.content), "byteLength": numbers.nbytes}
-        self.views.append(view if target is None else view | {"target": target})
+        number = self._add("bufferViews", view if target is None else view | {"target": target})
         self.content += numbers.tobytes()
         rows = numbers.reshape(len(numbers), -1)
-        description: dict[str, Any] = {"bufferView": len(self.views) - 1, "componentType": _COMPONENTS[kind]}
+        description: dict[str, Any] = {"bufferView": number, "componentType": _COMPONENTS[kind]}
         description |= {"count": len(rows), "type": _TYPES[rows.shape[1]]}
         if bounds:
             description |= {"min": rows.min(axis=0).tolist(), "max": rows.max(axis=0).tolist()}
-        self.accessors.append(description)
-        return len(self.accessors) - 1
+        return self._add("accessors", description)
 
-    def mesh(self, name: str, mesh: Mesh, *, joints: IntArray | None = None, **further: Any) -> int:
+    def mesh(self, name: str, mesh: Mesh, *, joints: IntArray | None = None) -> int:
         """Add a mesh; with `joints` (v,) each vertex follows one joint of a skin."""
         attributes = {
             "POSITION": self.array(mesh.vertices, bounds=True, target=_VERTICES),
@@ -292,44 +290,37 @@ class Glb:
             attributes["WEIGHTS_0"] = self.array(np.eye(4)[none], target=_VERTICES)
         indices = self.array(mesh.pieces.reshape(-1), kind=UNSIGNED, target=_INDICES)
         primitive = {"attributes": attributes, "indices": indices, "material": 0, "mode": _MODES[mesh.pieces.shape[1]]}
-        self.meshes.append({"name": name, "primitives": [primitive]} | further)
-        return len(self.meshes) - 1
+        return self._add("meshes", {"name": name, "primitives": [primitive]})
 
     def node(self, name: str, **what: Any) -> int:
         """Add a node; arrays among its properties become lists."""
         properties = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in what.items()}
-        self.nodes.append({"name": name} | properties)
-        return len(self.nodes) - 1
+        return self._add("nodes", {"name": name} | properties)
 
     def skin(self, name: str, joints: list[int], skeleton: int, into_joints: FloatArray) -> int:
         """Add a skin: joints (nodes), node above them, matrices (joint, 4, 4) from the resting mesh to the joints."""
         columns = np.swapaxes(into_joints, 1, 2).reshape(-1, 16)  # column by column, 3.6.2.4
         matrices = self.array(columns)
-        self.skins.append({"name": name, "joints": joints, "skeleton": skeleton, "inverseBindMatrices": matrices})
-        return len(self.skins) - 1
+        skin = {"name": name, "joints": joints, "skeleton": skeleton, "inverseBindMatrices": matrices}
+        return self._add("skins", skin)
 
     def move(self, node: int, path: str, times: int, values: int, *, interpolation: str = "LINEAR") -> None:
         """Animate the translation, rotation or scale of a node with arrays of times and values."""
-        self.samplers.append({"input": times, "output": values, "interpolation": interpolation})
-        self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
+        sampler = self._add("samplers", {"input": times, "output": values, "interpolation": interpolation})
+        self._add("channels", {"sampler": sampler, "target": {"node": node, "path": path}})
 
     def to_bytes(self, title: str, roots: list[int], **further: Any) -> bytes:
         """Bytes of the file: a scene of the nodes `roots`, an animation, and `further` properties of the top level."""
+        animation = {kind: self.elements.pop(kind) for kind in ("channels", "samplers") if kind in self.elements}
         description: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": "skisnow"},
             "scene": 0,
             "scenes": [{"name": title, "nodes": roots}],
-            "nodes": self.nodes,
-            "meshes": self.meshes,
             "materials": [{"name": "drawn", "pbrMetallicRoughness": _SURFACE, "doubleSided": True}],
-            "accessors": self.accessors,
-            "bufferViews": self.views,
             "buffers": [{"byteLength": len(self.content)}],
+            **self.elements,
+            **({"animations": [{"name": "run"} | animation]} if animation else {}),
         }
-        if self.skins:
-            description["skins"] = self.skins
-        if self.channels:
-            description["animations"] = [{"name": "run", "channels": self.channels, "samplers": self.samplers}]
         text = json.dumps(description | further, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
         chunks = _padded_chunk(_JSON, text.encode("utf-8"), b" ") + _padded_chunk(_BINARY, bytes(self.content), b"\0")
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

@@ -26,7 +26,7 @@ from .meshes import (
     unloaded_ski_mesh,
 )
 from .page import select_moments, thin_replay
-from .replay import SKI_NAMES, Replay, ReplayBoots, nearest_frame, rotation_of, without_sign_jumps
+from .replay import SKI_NAMES, Replay, nearest_frame, rotation_of, without_sign_jumps
 from .skier import JOINTS, part_poses, skier_mesh, skier_parts
 
 
@@ -137,13 +137,18 @@ def _skier(model: Glb, replay: Replay, times: int) -> tuple[list[int], list[int]
         mesh = model.mesh(part.name, part.mesh)
         if replay.skier is None or part.start not in JOINTS:
             boots.append(model.node(part.name, mesh=mesh))
-            continue
-        place, turn = part_poses(replay.skier, part)
-        turn = np.roll(turn, -1, axis=1)
-        body.append(model.node(part.name, mesh=mesh, translation=place[0], rotation=turn[0]))
-        model.move(body[-1], "translation", times, model.array(place))
-        model.move(body[-1], "rotation", times, model.array(turn))
+        else:
+            place, turn = part_poses(replay.skier, part)
+            body.append(_moving_node(model, part.name, times, place, np.roll(turn, -1, axis=1), mesh=mesh))
     return boots, body
+
+
+def _moving_node(model: Glb, name: str, times: int, place: FloatArray, turn: FloatArray, **properties: Any) -> int:
+    """Node that follows places (n, 3) and quaternions x, y, z, w (n, 4) at the moments of an accessor."""
+    node = model.node(name, translation=place[0], rotation=turn[0], **properties)
+    model.move(node, "translation", times, model.array(place))
+    model.move(node, "rotation", times, model.array(turn))
+    return node
 
 
 def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, times: int, on_ski: list[int]) -> tuple[int, int]:
@@ -156,32 +161,25 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, times: int, 
     place = np.zeros((*skis.bending[:, ski].shape, 3))
     place[..., 0], place[..., 2] = skis.station, skis.base_height + exaggeration * skis.bending[:, ski]
     turn = _about(0, -exaggeration * skis.twist[:, ski])  # the left edge goes down as the edge angle grows
-    joints = []
-    for j in range(len(skis.station)):
-        joints.append(model.node(f"{name}, station {j + 1}", translation=place[0, j], rotation=turn[0, j]))
-        model.move(joints[j], "translation", times, model.array(place[:, j]))
-        model.move(joints[j], "rotation", times, model.array(turn[:, j]))
-    boot = {"translation": skis.middle[ski], "rotation": _about(0, -skis.edge_angle)}
-    moved = None if skis.boots is None else _on_the_sledge(replay, skis.boots, ski)
-    if moved is not None:
-        boot = {"translation": moved[0][0], "rotation": moved[1][0]}
-    carrier = model.node(f"{name}, boot", children=[*joints, *on_ski], **boot)
-    if moved is not None:
-        model.move(carrier, "translation", times, model.array(moved[0]))
-        model.move(carrier, "rotation", times, model.array(moved[1]))
+    joints = [
+        _moving_node(model, f"{name}, station {j + 1}", times, place[:, j], turn[:, j])
+        for j in range(len(skis.station))
+    ]
+    on_boot = [*joints, *on_ski]
+    if skis.boots is None:
+        fixed = {"translation": skis.middle[ski], "rotation": _about(0, -skis.edge_angle)}
+        carrier = model.node(f"{name}, boot", children=on_boot, **fixed)
+    else:
+        back = rotation_of(replay.attitude).inv()  # places and turns in the sledge's frame
+        path = back.apply(skis.boots.place[:, ski] - replay.place)
+        turns = without_sign_jumps((back * rotation_of(skis.boots.attitude[:, ski])).as_quat())
+        carrier = _moving_node(model, f"{name}, boot", times, path, turns, children=on_boot)
     into_joints = np.tile(np.eye(4), (len(joints), 1, 1))
     into_joints[:, 0, 3], into_joints[:, 2, 3] = -skis.station, -skis.base_height
     skin = model.skin(name, joints, carrier, into_joints)
     of_section = np.repeat(np.arange(len(joints)), CORNERS)
     mesh = model.mesh(name, unloaded_ski_mesh(replay, ski), joints=of_section)
     return carrier, model.node(name, mesh=mesh, skin=skin)
-
-
-def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatArray, FloatArray]:
-    """Places (n, 3) of a moving boot in the sledge's frame (m), and its quaternions x, y, z, w."""
-    back = rotation_of(replay.attitude).inv()
-    turn = (back * rotation_of(boots.attitude[:, ski])).as_quat()
-    return back.apply(boots.place[:, ski] - replay.place), without_sign_jumps(turn)
 
 
 def _groove(model: Glb, replay: Replay) -> list[int]:

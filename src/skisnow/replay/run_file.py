@@ -62,7 +62,10 @@ def replay_of_file(
     try:
         with netcdf_file(path, "r", mmap=False) as file:
             content: Any = file  # its attributes are those of the file
-            arrays, sections = _read_arrays(content), json_value(content.scenario.decode("utf-8"))
+            patterns = _VECTORS | ({"centre": "centre_{}"} if "centre_x" in content.variables else {})
+            arrays = {name: _values(content, name) for name in _PLAIN}
+            arrays |= {name: _vectors(content, pattern) for name, pattern in patterns.items()}
+            sections = json_value(content.scenario.decode("utf-8"))
             values = {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
             boots = _boots(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
@@ -70,22 +73,16 @@ def replay_of_file(
         require_range("solver_line_spacing_m", spacing, 0.0, 1.0, above=True)
         setting = replace(_make_setting(path, values, outcome, spacing, ski), boots=boots)
         return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track)
-    except SkisnowError as error:
-        if str(path.parent) in str(error) and not isinstance(error, ContentError):
-            raise
-        raise _not_a_run(path, error) from error
     except OSError as error:
         raise ParameterError("{path} cannot be read: {error}. Check the path").tag(
             "cannot_read", path=path, error=error.strerror or error
         ) from error
-    except _DAMAGE as error:
-        raise _not_a_run(path, error) from error
-
-
-def _read_arrays(file: Any) -> dict[str, FloatArray]:
-    patterns = _VECTORS | ({"centre": "centre_{}"} if "centre_x" in file.variables else {})
-    vectors = {name: _vectors(file, pattern) for name, pattern in patterns.items()}
-    return {name: _values(file, name) for name in _PLAIN} | vectors
+    except (SkisnowError, *_DAMAGE) as error:
+        if isinstance(error, SkisnowError) and str(path.parent) in str(error) and not isinstance(error, ContentError):
+            raise
+        raise ParameterError(
+            "{path} is damaged, or it is not a run.nc of skisnow ({error}). Simulate it again with --out"
+        ).tag("not_a_run", path=path, error=error) from error
 
 
 def _boots(file: Any) -> ReplayBoots | None:
@@ -164,12 +161,6 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
     except ParameterError:
         return None
     return course_on_slope(course, slope)
-
-
-def _not_a_run(path: Path, error: Exception) -> ParameterError:
-    return ParameterError(
-        "{path} is damaged, or it is not a run.nc of skisnow ({error}). Simulate it again with --out"
-    ).tag("not_a_run", path=path, error=error)
 
 
 def _locate(path: Path, named: str) -> Path:

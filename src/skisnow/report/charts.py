@@ -80,46 +80,25 @@ def _laws(
     return laws
 
 
-@dataclass(frozen=True, slots=True)
-class SkiDrawing:
-    """Tables along a ski from tip to tail.
+def ski_columns(ski: Ski) -> dict[str, list[float]]:
+    """Tables along a ski for a chart, with every second point (5 mm apart), from tip to tail.
 
-    name, source: as in `skisnow.ski.Ski`.
     station_m: distance from the boot, positive forward.
     half_width_mm, base_height_mm, EI_N_m2, GJ_N_m2: half of the width from edge to edge, height of the unloaded base,
         bending and torsional stiffness.
-    facts: key data of the ski as texts with units, by name.
     """
-
-    name: str
-    source: str
-    station_m: tuple[float, ...]
-    half_width_mm: tuple[float, ...]
-    base_height_mm: tuple[float, ...]
-    EI_N_m2: tuple[float, ...]
-    GJ_N_m2: tuple[float, ...]
-    facts: dict[str, str]
-
-
-def ski_drawing(ski: Ski) -> SkiDrawing:
-    """Tables of a ski for a chart, with every second point (5 mm apart)."""
-
-    def thinned(table: FloatArray) -> tuple[float, ...]:
-        return tuple(np.append(table[:-1:2], table[-1]).tolist())
-
-    return SkiDrawing(
-        name=ski.name,
-        source=" ".join(ski.source.split()),
-        station_m=thinned(ski.station),
-        half_width_mm=thinned(ski.width / (2.0 * MM)),
-        base_height_mm=thinned(ski.base_height / MM),
-        EI_N_m2=thinned(ski.bending_stiffness),
-        GJ_N_m2=thinned(ski.torsional_stiffness),
-        facts=_ski_facts(ski),
-    )
+    columns = {
+        "station_m": ski.station,
+        "half_width_mm": ski.width / (2.0 * MM),
+        "base_height_mm": ski.base_height / MM,
+        "EI_N_m2": ski.bending_stiffness,
+        "GJ_N_m2": ski.torsional_stiffness,
+    }
+    return {name: [*table[:-1:2].tolist(), float(table[-1])] for name, table in columns.items()}
 
 
-def _ski_facts(ski: Ski) -> dict[str, str]:
+def ski_facts(ski: Ski) -> dict[str, str]:
+    """Key data of a ski as texts with units, by name."""
     tip, waist, tail = (significant(width / MM) for width in ski.sidecut_widths)
     middle = int(np.argmin(np.abs(ski.station)))
     return {

@@ -215,6 +215,9 @@ def _time_element(iso_time: str, words: str) -> Markup:
 SYMBOL: Final = re.compile(r"(?:(?<![\w<>/])|(?<=_[A-Za-z0-9]/))([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
 _PLAIN: Final = str.maketrans("−\u00a0\u202f", "-  ")
 _PERCENT: Final = re.compile(r"(?<=\d) %")
+_MATHS: Final = (
+    r"\times \pm \le \ge \approx \rightarrow \vartheta \alpha \beta \gamma \delta \Delta \kappa \mu \rho \sigma \tau"
+)
 _LATEX_SPECIAL: Final = {
     "\\": r"\textbackslash{}",
     "{": r"\{",
@@ -238,29 +241,14 @@ _LATEX_SPECIAL: Final = {
     "°": r"\textdegree{}",
     "·": r"\textperiodcentered{}",
     "−": "$-$",
-    "×": r"$\times$",
-    "±": r"$\pm$",
-    "≤": r"$\le$",
-    "≥": r"$\ge$",
-    "ϑ": r"$\vartheta$",
-    "α": r"$\alpha$",
-    "β": r"$\beta$",
-    "γ": r"$\gamma$",
-    "κ": r"$\kappa$",
-    "μ": r"$\mu$",
-    "σ": r"$\sigma$",
-    "τ": r"$\tau$",
-    "Δ": r"$\Delta$",
-    "≈": r"$\approx$",
-    "→": r"$\rightarrow$",
     "½": r"\textonehalf{}",
-    "ρ": r"$\rho$",
-    "δ": r"$\delta$",
     "–": "--",
     "\u202f": r"\,",
     "\n": " ",
     "\r": " ",
-} | {letter: rf"\textsubscript{{{digit}}}" for digit, letter in enumerate("₀₁₂₃₄₅₆₇₈₉")}
+    **{letter: rf"\textsubscript{{{digit}}}" for digit, letter in enumerate("₀₁₂₃₄₅₆₇₈₉")},
+    **{letter: rf"${command}$" for letter, command in zip("×±≤≥≈→ϑαβγδΔκμρστ", _MATHS.split(), strict=True)},
+}
 
 
 def prose(template: str, **values: Any) -> Markup:

@@ -10,7 +10,6 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -21,8 +20,7 @@ from .._support.spreadsheet_text import csv_text, protect_from_formulas
 from .._support.staging import require_writable, staged, write_file
 from ..identification.problem import Fit
 from ..identification.result import Identification, Interval
-from .figures.drawing import Drawing, Picture
-from .figures.figure_files import Progress, picture_files, silent, write_pictures
+from .figures.drawing import Drawing, Picture, Progress, picture_files, silent, write_pictures
 from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, MARKERS, ORANGE, PALE, legend_below, new_figure
 from .formatting import counted, figure_text, interval, json_text, prose, significant
 from .sheet import Header, Section, sheet
@@ -80,25 +78,17 @@ def identify_page(result: Identification, pictures: list[Picture]) -> str:
     fits = [picture for picture in pictures if picture.name != "profiles"]
     profiles = [picture for picture in pictures if picture.name == "profiles"]
     outcome = outcome_words(result.outcome)
+    key = [prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)]
+    warnings = [prose("{text}.", text=text) for text in result.warnings]
+    correlations = [correlation_table(result)] if len(result.parameters) > 1 else []
     sections = [
-        Section(
-            "outcome",
-            Message("Outcome"),
-            key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
-            tables=[parameters_table(result)],
-        )
+        Section("outcome", Message("Outcome"), key=key, tables=[parameters_table(result)]),
+        Section("warnings", Message("Warnings"), words=warnings),
+        Section("fit", Message("Measured and identified"), pictures=fits),
+        Section("correlation", Message("Correlations"), tables=correlations),
+        Section("profiles", Message("Profiles"), pictures=profiles),
+        Section("provenance", Message("How it was computed"), words=_method_sentences(result)),
     ]
-    if result.warnings:
-        sections.append(
-            Section("warnings", Message("Warnings"), words=[prose("{text}.", text=text) for text in result.warnings])
-        )
-    if fits:
-        sections.append(Section("fit", Message("Measured and identified"), pictures=fits))
-    if len(result.parameters) > 1:
-        sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
-    if profiles:
-        sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
-    sections.append(Section("provenance", Message("How it was computed"), words=_method_sentences(result)))
     facts = [
         (Message("Scenario"), result.scenario),
         (Message("Points"), str(result.points)),
@@ -106,8 +96,7 @@ def identify_page(result: Identification, pictures: list[Picture]) -> str:
     ]
     title = f"{', '.join(row.parameter.name for row in result.parameters)}: {outcome}"
     kind = Message("Parameters identified from measurements")
-    header = Header(kind, title, facts, headline=_headline(result))
-    return sheet(header, sections)
+    return sheet(Header(kind, title, facts, headline=_headline(result)), sections)
 
 
 def _headline(result: Identification) -> Markup:
@@ -116,10 +105,8 @@ def _headline(result: Identification) -> Markup:
         return Markup("")
     first = result.parameters[0]
     ends = Message("without an interval")
-    if first.interval is not None and None not in first.interval:
-        ends = Message(
-            "95 % interval {interval}", interval=interval([float(end) for end in first.interval if end is not None])
-        )
+    if (pair := _pair(first.interval)) is not None:
+        ends = Message("95 % interval {interval}", interval=interval(pair))
     value = Markup("<strong>{}</strong>").format(f"{significant(first.value)} {first.parameter.unit}".strip())
     return prose("{name} {value}, {ends}.", name=first.parameter.name, value=value, ends=ends)
 
@@ -127,12 +114,8 @@ def _headline(result: Identification) -> Markup:
 def _method_sentences(result: Identification) -> list[Markup]:
     effort = result.effort
     runs = counted(effort.simulations, "{count} simulated run", "{count} simulated runs")
-    last = prose(
-        "{runs}, {rounds}, {wall} s.",
-        runs=runs,
-        rounds=counted(effort.rounds, "{count} Jacobian", "{count} Jacobians"),
-        wall=Message("{seconds:.1f}", seconds=effort.wall_s),
-    )
+    rounds = counted(effort.rounds, "{count} Jacobian", "{count} Jacobians")
+    last = prose("{runs}, {rounds}, {wall:.1f} s.", runs=runs, rounds=rounds, wall=effort.wall_s)
     data = [prose("{name} was taken for {kind}.", name=name, kind=kind) for name, kind in result.data]
     return [*data, *(prose("{text}.", text=text) for text in result.methods), last]
 
@@ -220,14 +203,12 @@ def parameters_table(result: Identification) -> Table:
 def correlation_table(result: Identification) -> Table:
     """Correlations of the estimates."""
     names = [row.parameter.name for row in result.parameters]
-    rows = [
-        (names[i], *(float(r) if np.isfinite(r) else None for r in result.correlation[i])) for i in range(len(names))
-    ]
+    correlations = [[r if np.isfinite(r) else None for r in row] for row in result.correlation.tolist()]
     return Table(
         "correlation",
         Message("Correlations of the estimates. Beyond ±0.9 two parameters are hardly told apart."),
         (Column("parameter", Message("Parameter"), "text"), *(Column(name, name.replace("_", " ")) for name in names)),
-        rows,
+        [(name, *row) for name, row in zip(names, correlations, strict=True)],
     )
 
 
@@ -249,25 +230,13 @@ def draw_tracks(fits: Sequence[Fit]) -> Figure:
     height = float(np.clip((DOUBLE_MM - 25.0) * y / x + 25.0, _SMALLEST_MM, _LARGEST_MM))
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height)
     axes = figure.subplots()
+    points: dict[str, Any] = {"linestyle": "none", "color": BLACK, "markerfacecolor": "none", "markersize": 3.0}
     handles: list[Line2D] = []
     for number, fit in enumerate(fits[:_MOST_RUNS]):
-        colour, marker = COLOURS[number], MARKERS[number]
-        axes.plot(fit.fitted[:, 0], fit.fitted[:, 1], color=colour, zorder=3)
-        points = axes.plot(
-            fit.measured[:, 0],
-            fit.measured[:, 1],
-            linestyle="none",
-            marker=marker,
-            markerfacecolor="none",
-            markersize=3.0,
-            color=BLACK,
-            zorder=2,
-            label=Message("{name}, measured", name=figure_text(fit.name)),
-        )
-        handles += [
-            *points,
-            Line2D([], [], color=colour, label=Message("{name}, identified", name=figure_text(fit.name))),
-        ]
+        label = Message("{name}, identified", name=figure_text(fit.name))
+        line = axes.plot(*fit.fitted.T[:2], label=label, color=COLOURS[number], zorder=3)
+        label = Message("{name}, measured", name=figure_text(fit.name))
+        handles += axes.plot(*fit.measured.T[:2], label=label, marker=MARKERS[number], zorder=2, **points) + line
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(Message("x, down the fall line (m)"))
     axes.set_ylabel(Message("y, to the left (m)"))
@@ -284,7 +253,11 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
     for number, fit in enumerate(fits[:_MOST_RUNS]):
         colour, marker = COLOURS[number], MARKERS[number]
         for axes, label in zip(rows, labels, strict=True):
-            _draw_residuals_of(axes, fit, fit.labels.index(label), colour, marker)
+            i = fit.labels.index(label)
+            use = _measured_mask(fit, i)
+            along, residual, sd = fit.along[use], fit.residual[use, i], fit.sd[use, i]
+            axes.fill_between(along, -2.0 * sd, 2.0 * sd, color=PALE, alpha=0.35, linewidth=0.0, zorder=0)
+            axes.plot(along, residual, color=colour, marker=marker, markerfacecolor="none", linewidth=0.6, zorder=3)
         handles.append(Line2D([], [], color=colour, marker=marker, markerfacecolor="none", label=figure_text(fit.name)))
     for axes, label in zip(rows, labels, strict=True):
         axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
@@ -302,15 +275,6 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
 
 def _measured_mask(fit: Fit, i: int) -> BoolArray:
     return np.isfinite(fit.measured[:, i]) & np.isfinite(fit.sd[:, i])
-
-
-def _draw_residuals_of(axes: Axes, fit: Fit, i: int, colour: str, marker: str) -> None:
-    use = _measured_mask(fit, i)
-    if not use.any():
-        return
-    along, residual, sd = fit.along[use], fit.residual[use, i], fit.sd[use, i]
-    axes.fill_between(along, -2.0 * sd, 2.0 * sd, color=PALE, alpha=0.35, linewidth=0.0, zorder=0)
-    axes.plot(along, residual, color=colour, marker=marker, markerfacecolor="none", linewidth=0.6, zorder=3)
 
 
 def draw_profiles(result: Identification) -> Figure:

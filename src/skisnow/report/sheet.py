@@ -51,7 +51,8 @@ class Section:
 
 
 def sheet(header: Header, sections: Sequence[Section]) -> str:
-    """HTML of a report in the current language."""
+    """HTML of a report in the current language; empty sections are omitted."""
+    sections = [part for part in sections if part.key or part.words or part.pictures or part.tables or part.after]
     pictures = [picture for section in sections for picture in section.pictures]
     every = [table for section in sections for table in section.tables]
     return render_template(

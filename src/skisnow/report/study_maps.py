@@ -73,8 +73,11 @@ def grip_map(table: StudyTable) -> Figure:
                 _draw_field(axes, of_panel, layout)
             _draw_points(axes, of_panel, layout)
     ordinate = Message("side force / limit") if layout.second is None else label(layout.second)
-    _set_scales(every[0], table.rows, layout)
-    if layout.second is not None:
+    _set_scales(every[0], table.rows, layout.x, layout.second)
+    if layout.second is None:
+        shares = np.array([share_of_limit(row) for row in table.rows])
+        every[0].set_ylim(0.0, 1.08 * float(shares[np.isfinite(shares)].max(initial=1.0)))
+    else:
         for axes in every:  # room for the symbols at the rim
             axes.use_sticky_edges = False
             axes.margins(0.03)
@@ -111,12 +114,10 @@ def _draw_field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
 
 
 def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
-    for holds, line_style in _marker_styles(layout.sampled).items():
+    for holds, look in _marker_styles(layout.sampled).items():
         chosen = [row for row in rows if row["holds"] is holds]
-        axes.plot(
-            [row[layout.x] for row in chosen], [row[str(layout.second)] for row in chosen], linestyle="none", zorder=3,
-            **line_style,
-        )  # fmt: skip
+        x, y = _numbers(chosen, layout.x), _numbers(chosen, str(layout.second))
+        axes.plot(x, y, linestyle="none", zorder=3, **look)
 
 
 def _marker_styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
@@ -131,23 +132,17 @@ def _marker_styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
 def _draw_share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     ordered = sorted(rows, key=lambda row: float(row[layout.x]))
     axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
-    for holds, line_style in _marker_styles(True).items():
+    for holds, look in _marker_styles(True).items():
         chosen = [row for row in ordered if row["holds"] is holds]
-        axes.plot(
-            [row[layout.x] for row in chosen], [share_of_limit(row) for row in chosen], linestyle="none", **line_style
-        )
+        axes.plot(_numbers(chosen, layout.x), list(map(share_of_limit, chosen)), linestyle="none", **look)
     axes.axhline(1.0, color=BLACK, linewidth=1.8, zorder=2)
 
 
-def _set_scales(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
-    for which, name in (("x", layout.x), ("y", layout.second)):
-        if name is None:
-            shares = np.array([share_of_limit(row) for row in rows])
-            finite = shares[np.isfinite(shares)]
-            axes.set_ylim(0.0, 1.08 * max(1.0, float(finite.max(initial=1.0))))
-            continue
-        values = np.array([float(row[name]) for row in rows])
-        if wants_logarithm(name, values):
+def _set_scales(axes: Axes, rows: Sequence[Json], x: str, y: str | None) -> None:
+    """Set logarithmic axes of inputs that span a large factor."""
+    for which, name in (("x", x), ("y", y)):
+        values = np.zeros(1) if name is None else _numbers(rows, name)
+        if name is not None and wants_logarithm(name, values):
             logarithmic(axes, which, values)
 
 
@@ -196,7 +191,10 @@ def radius_map(table: StudyTable) -> Figure:
             _draw_lines(axes, of_panel, layout, values)
         else:
             _draw_cloud(axes, of_panel, layout, scale)
-    _set_limits(every[0], table.rows, layout)
+    _set_scales(every[0], table.rows, layout.x, None)
+    radii = _numbers(table.rows, RADIUS)
+    if np.isfinite(radii).any():
+        every[0].set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
     label_outside(every, columns, label(layout.x), Message("turn radius (m):\ncircle through boot and ±0.4 m"))
     write_caption(figure, fixed_inputs(table))
     if scale is not None and not _has_lines(layout, values):
@@ -211,15 +209,17 @@ def _has_lines(layout: MapLayout, values: list[Any]) -> bool:
 
 def _draw_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any]) -> None:
     for value, of_line in lines_of(rows, layout.second):
-        place = values.index(value)
+        look = _line_look(values.index(value))
         ordered = sorted(of_line, key=lambda row: float(row[layout.x]))
         x, y = _numbers(ordered, layout.x), _numbers(ordered, RADIUS)
-        line_style: dict[str, Any] = {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
-        axes.plot(x, y, color=line_style["color"], linewidth=0.8, zorder=2)
-        for holds in (True, False):
+        axes.plot(x, y, color=look["color"], linewidth=0.8, zorder=2)
+        for holds, face in ((True, look["color"]), (False, "white")):
             chosen = np.array([row["holds"] is holds for row in ordered], dtype=bool)
-            face = line_style["color"] if holds else "white"
-            axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **line_style)
+            axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **look)
+
+
+def _line_look(place: int) -> dict[str, Any]:
+    return {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
 
 
 def _colour_scale(layout: MapLayout, rows: Sequence[Json]) -> ScalarMappable | None:
@@ -251,35 +251,22 @@ def _draw_sidecut(axes: Axes, rows: Sequence[Json]) -> None:
         axes.plot(angle, radius * np.cos(angle * DEGREE), color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, zorder=1)
 
 
-def _set_limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
-    x = _numbers(rows, layout.x)
-    if wants_logarithm(layout.x, x):
-        logarithmic(axes, "x", x)
-    radii = _numbers(rows, RADIUS)
-    if np.isfinite(radii).any():
-        axes.set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
-
-
 def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) -> list[Line2D]:
     handles = []
     lined = _has_lines(layout, values)
     if lined and layout.second is not None:
         handles = [
-            Line2D(
-                [], [], color=COLOURS[place % len(COLOURS)], marker=MARKERS[place % len(MARKERS)], linewidth=0.8,
-                label=short(layout.second, value),
-            )
+            Line2D([], [], linewidth=0.8, label=short(layout.second, value), **_line_look(place))
             for place, value in enumerate(values)
-        ]  # fmt: skip
-    holds, slips = (("o", GREY), ("o", "white")) if lined else (("o", GREY), ("X", GREY))
-    texts = (
-        (holds, True, Message("holds")),
-        (slips, False, Message("slips: radius of an edge held by something else")),
+        ]
+    slips = {"marker": "o", "markerfacecolor": "white"} if lined else {"marker": "X"}
+    texts: tuple[tuple[bool, str, dict[str, Any]], ...] = (
+        (True, Message("holds"), {"marker": "o"}),
+        (False, Message("slips: radius of an edge held by something else"), slips),
     )
-    for (marker, face), value, text in texts:
-        if not any(row["holds"] is value and row[RADIUS] is not None for row in rows):
-            continue
-        handles.append(Line2D([], [], linestyle="none", marker=marker, color=GREY, markerfacecolor=face, label=text))
+    for value, text, look in texts:
+        if any(row["holds"] is value and row[RADIUS] is not None for row in rows):
+            handles.append(Line2D([], [], linestyle="none", color=GREY, label=text, **look))
     if layout.x == "edge_angle_deg":
         text = Message("sidecut radius × cos ϑ")
         handles.append(Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, label=text))

@@ -1,17 +1,25 @@
-"""Results as text for a terminal: skis in snow, an identification, a run and its gates."""
+"""Results as text: verdicts on two skis and two runs; for a terminal skis in snow, identifications, runs, gates."""
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from operator import itemgetter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from .._support.errors import SkisnowWarning
+import numpy as np
+
+from .._support.errors import SkisnowError, SkisnowWarning
+from .._support.messages import Message
+from .._support.units import DEGREE
+from .._support.user_files import is_file, read_json
 from ..simulation.run_summary import run_gates
 from ..track.course.gates_table import gate_rows
+from ..track.track import Track
 from .formatting import aligned_rows, facts_lines, named_rows, plain
-from .pair_verdicts import ski_verdict
 
 if TYPE_CHECKING:
     from ..identification.result import Identification
@@ -39,29 +47,24 @@ def carve_summary(contents: Json) -> str:
 
     contents: JSON of `skisnow.carving.answer.answers_dict`.
     """
-    return "\n".join(_carve_lines(contents))
-
-
-def _carve_lines(contents: Json) -> Iterator[str]:
     answers = answers_of(contents)
     inputs, titles = answers[0]["inputs"], ski_titles(answers)
-    for title, answer in zip(titles[1:], answers[1:], strict=True):
-        yield ski_verdict(answers[0], answer, (titles[0], title))
-    if len(answers) > 1:
-        yield ""
+    lines: list[str] = [ski_verdict(answers[0], answer, (titles[0], title))
+                        for title, answer in zip(titles[1:], answers[1:], strict=True)]  # fmt: skip
+    lines += [""] if len(answers) > 1 else []
     kind = "at rest" if inputs["at_rest"] else "carving"
     angle, load, moment = (plain(inputs[key]) for key in ("edge_angle_deg", "load_N", "moment_Nm"))
-    yield f"{kind}: edge angle {angle} degrees, load {load} N, boot moment {moment} N m"
-    yield f"snow: {_snow_in_words(answers[0])}"
-    yield f"model: {_model_in_words(inputs)}"
-    yield ""
-    yield from _carve_table(answers)
-    yield from _snow_intervals(answers)
-    yield from map(str, rank_warnings(contents))
+    lines.append(f"{kind}: edge angle {angle} degrees, load {load} N, boot moment {moment} N m")
+    lines += [f"snow: {_snow_in_words(answers[0])}", f"model: {_model_in_words(inputs)}", "", *_carve_table(answers)]
+    for title, answer in zip(titles, answers, strict=True):  # half the intervals that those of the snow give
+        if halves := answer.get("half_intervals"):
+            words = ", ".join(f"{output} ±{plain(half, 2)}" for output, half in halves.items())
+            lines.append(f"95 % intervals by the snow, {title}: {words}")
+    lines += map(str, rank_warnings(contents))
     for title, answer in zip(titles, answers, strict=True):
         if answer["remedy"]:
-            yield ""
-            yield f"{title}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"
+            lines += ["", f"{title}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"]
+    return "\n".join(lines)
 
 
 def _snow_in_words(answer: Json) -> str:
@@ -137,13 +140,10 @@ def _carve_table(answers: list[Json]) -> Iterator[str]:
     cells = [["", *titles, *(f"{title}/%" for title in titles[1:])]]
     for name, of in _ROWS:
         values = [of(answer) for answer in answers]
-        cells.append([name, *map(_cell_text, values), *(_difference(values[0], value) for value in values[1:])])
+        texts = (value if isinstance(value, str) else plain(value) for value in values)
+        cells.append([name, *texts, *(_difference(values[0], value) for value in values[1:])])
     lines = [line.rstrip() for line in aligned_rows(cells, left=1)]
     yield from lines if len(answers) > 1 else lines[1:]
-
-
-def _cell_text(value: str | float | None) -> str:
-    return value if isinstance(value, str) else plain(value)
 
 
 def _difference(first: str | float | None, other: str | float | None) -> str:
@@ -152,15 +152,6 @@ def _difference(first: str | float | None, other: str | float | None) -> str:
         return ""
     percent = 100.0 * (other / first - 1.0)
     return "0" if abs(percent) < _SAME else f"{percent:+.2g}"
-
-
-def _snow_intervals(answers: list[Json]) -> Iterator[str]:
-    """Half the 95 % intervals that those of the snow give the outputs, where the snow has any."""
-    for title, answer in zip(ski_titles(answers), answers, strict=True):
-        halves = answer.get("half_intervals")
-        if halves:
-            words = ", ".join(f"{output} ±{plain(half, 2)}" for output, half in halves.items())
-            yield f"95 % intervals by the snow, {title}: {words}"
 
 
 def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
@@ -194,29 +185,18 @@ def simulate_summary(run: Run, *, title: str, verification: Mapping[str, Json] |
     lines = [f"{title}: {run.outcome.replace('_', ' ')}", *filter(None, [run.remedy]), ""]
     lines += named_rows(run._repr_facts().rows)
     if (result := run_gates(run)) is not None:
-        lines.append(_gates_sentence(result))
+        times = [time for time in result.times if time is not None]
+        between = f", {times[-1] - times[0]:.2f} s between the first and the last that was reached" if times[1:] else ""
+        lines.append(f"{result.passed} of {len(result.times)} gates passed{between}")
     if verification:
-        lines += ["", *_verification_lines(verification)]
+        lines += ["", "computed again, finer or with another input, one at a time:"]
+        rows = []
+        for key, row in verification.items():
+            outcome = "" if row["outcome"] == "finished" else f" ({row['outcome'].replace('_', ' ')})"
+            change = f"{plain(row['was'])} to {plain(row['now'])}"
+            rows.append((key, f"{change}: the end moves by {plain(row['end_moves_cm'])} cm{outcome}"))
+        lines += [f"  {line}" for line in named_rows(rows)]
     return "\n".join(lines)
-
-
-def _gates_sentence(result: CourseResult) -> str:
-    """Number of passed gates, and the time from the first to the last one."""
-    times = [time for time in result.times if time is not None]
-    passed = f"{result.passed} of {len(result.times)} gates passed"
-    if len(times) < 2:
-        return passed
-    return f"{passed}, {times[-1] - times[0]:.2f} s between the first and the last that was reached"
-
-
-def _verification_lines(verification: Mapping[str, Json]) -> Iterator[str]:
-    yield "computed again, finer or with another input, one at a time:"
-    rows = []
-    for key, row in verification.items():
-        outcome = "" if row["outcome"] == "finished" else f" ({row['outcome'].replace('_', ' ')})"
-        change = f"{plain(row['was'])} to {plain(row['now'])}"
-        rows.append((key, f"{change}: the end moves by {plain(row['end_moves_cm'])} cm{outcome}"))
-    yield from (f"  {line}" for line in named_rows(rows))
 
 
 def gates_text(result: CourseResult) -> str:
@@ -226,6 +206,104 @@ def gates_text(result: CourseResult) -> str:
         time, split = (f"{row[name]:.2f}" if row[name] is not None else "-" for name in ("time_s", "split_s"))
         speed, clearance = (plain(row[name], 3) for name in ("speed_m_per_s", "clearance_m"))
         rows.append((row["gate"], row["outcome"].replace("_", " "), time, split, speed, clearance))
-    fault = result.fault
-    end = [] if fault is None else [str(fault.words)]
+    end = [] if result.fault is None else [str(result.fault.words)]
     return "\n".join([f"{result.passed} of {len(result.passages)} gates passed", *aligned_rows(rows), *end])
+
+
+RADII: Final = ("turn_radius_boot_m", "turn_radius_boot_other_spread_m", "turn_radius_chord_m", "turn_radius_median_m")
+"""Definitions of the radius of a carved turn, that of the verdict first."""
+_SAME_RADIUS: Final = 5e-4  # relative difference below which two numbers count as equal: they are computed no better
+_SAME_TIME: Final = 5e-3  # difference (s) of two runs below which they count as equally fast
+
+
+def ski_verdict(first: Mapping[str, Any], other: Mapping[str, Any], names: tuple[str, str]) -> Message:
+    """Which of two skis carves the tighter turn in the same snow.
+
+    Both skis are in one snow: its errors change both radii, so the interval of their ratio comes from the difference
+    of the relative changes. It is certain if the interval excludes 0 and all definitions of the radius agree.
+
+    first, other: answers in the JSON of `skisnow carve`.
+    """
+    radii = [(first[key], other[key]) for key in RADII if first[key] is not None and other[key] is not None]
+    if not radii or first[RADII[0]] is None or other[RADII[0]] is None:
+        return Message("{a} and {b} cannot be compared: not both have a carved turn.", a=names[0], b=names[1])
+    (one, two), *_ = radii
+    if abs(two / one - 1.0) < _SAME_RADIUS:
+        return Message("{a} and {b} carve the same radius, {radius:.3g} m.", a=names[0], b=names[1], radius=one)
+    tight, wide, by_name = (other, first, names[::-1]) if two < one else (first, other, names)
+    interval, half = _difference_interval(tight, wide)
+    percent = 100.0 * (wide[RADII[0]] / tight[RADII[0]] - 1.0)
+    comparison = Message(
+        "{a} turns tighter than {b}: the radius of {b} is larger by {percent:.2g} %{interval}",
+        a=by_name[0], b=by_name[1], percent=percent, interval=interval,
+    )  # fmt: skip
+    if any((b - a) * (two - one) < 0.0 for a, b in radii):
+        return Message(
+            "{comparison}: not certain, as another definition of the radius says the opposite.", comparison=comparison
+        )
+    if half is None:
+        return Message("{comparison}; the snow has no interval, so this difference has none.", comparison=comparison)
+    if half < percent:
+        return Message("{comparison}: certain, as far as the snow decides.", comparison=comparison)
+    return Message("{comparison}: not certain, as the snow is not known better.", comparison=comparison)
+
+
+def _difference_interval(tight: Mapping[str, Any], wide: Mapping[str, Any]) -> tuple[str, float | None]:
+    """Ends of the 95 % interval of the difference (%) in brackets, and half of it; "" and None without one."""
+    changes = [side.get("radius_changes_by_snow_m") or [] for side in (tight, wide)]
+    if not changes[0] or len(changes[0]) != len(changes[1]):
+        return "", None
+    ratio = wide[RADII[0]] / tight[RADII[0]]
+    relative = [b / wide[RADII[0]] - a / tight[RADII[0]] for a, b in zip(*changes, strict=True)]
+    percent, half = 100.0 * (ratio - 1.0), 100.0 * ratio * math.hypot(*relative)
+    return Message(" [{low:+.2g}, {high:+.2g}]", low=percent - half, high=percent + half), half
+
+
+def run_verdict(first: Track, other: Track) -> Message | None:
+    """Which of two computed runs is faster over the length that both ran; None without such a length."""
+    ways = [
+        np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(run.place, axis=0), axis=1))]) for run in (first, other)
+    ]
+    length = min(way[-1] for way in ways)
+    if not np.isfinite(length) or length <= 0.0:
+        return None
+    one, two = (
+        float(np.interp(length, way, run.time - run.time[0])) for way, run in zip(ways, (first, other), strict=True)
+    )
+    if abs(one - two) < _SAME_TIME:
+        return Message(
+            "{a} and {b} are equally fast over the {length:.4g} m that both ran, within {limit:g} s.",
+            a=first.name, b=other.name, length=length, limit=_SAME_TIME,
+        )  # fmt: skip
+    fast, slow = (first, other) if one < two else (other, first)
+    return Message(
+        "{a} is faster than {b} by {seconds:.2f} s over the {length:.4g} m that both ran. Computed runs have no "
+        "scatter, so there is no interval; simulate --verify shows how exact each run is.",
+        a=fast.name, b=slow.name, seconds=abs(one - two), length=length,
+    )  # fmt: skip
+
+
+def read_compared(path: Path) -> Track:
+    """Track of a file, or of a run's folder with the angle of its slope, under the name by which the user called it."""
+    from ..track.read import read_track
+
+    file = path / "track.csv" if path.is_dir() else path
+    track = read_track(file)
+    return replace(track, name=str(path), slope_angle=_slope_angle_from_summary(file) if track.axes == "file" else None)
+
+
+def _slope_angle_from_summary(file: Path) -> float | None:
+    """Slope angle (rad) of the run that wrote a track.csv, 0 unless its slope is a plane; None for any other file."""
+    summary = file.with_name("summary.json")
+    if file.name != "track.csv" or not is_file(summary):
+        return None
+    try:
+        slope = read_json(summary)["scenario"]["slope"]
+        return float(slope["angle_deg"]) * DEGREE if slope["kind"] == "plane" else 0.0
+    except (SkisnowError, KeyError, TypeError, ValueError):  # another program's summary, or a damaged one
+        return None
+
+
+def time_verdict(first: Track, other: Track) -> Message | None:
+    """Which of two computed runs is faster; None if one of the tracks was measured."""
+    return None if None in (first.slope_angle, other.slope_angle) else run_verdict(first, other)

@@ -102,15 +102,11 @@ def table_csv(table: Table) -> str:
     """CSV of the whole table; an interval has two columns, ``…_low`` and ``…_high``."""
     buffer = io.StringIO(newline="")
     writer = csv.writer(buffer, lineterminator="\r\n")
-    writer.writerow(chain.from_iterable(_csv_names(column) for column in table.columns))
+    endings = {"interval": ("_low", "_high"), "range": ("_low", "_high"), "estimate": ("", "_low", "_high")}
+    writer.writerow(f"{column.key}{end}" for column in table.columns for end in endings.get(column.kind, ("",)))
     columns = [_csv_cells(column, [row[i] for row in table.rows]) for i, column in enumerate(table.columns)]
     writer.writerows(zip(*chain.from_iterable(columns), strict=True))
     return buffer.getvalue()
-
-
-def _csv_names(column: Column) -> tuple[str, ...]:
-    ends = (f"{column.key}_low", f"{column.key}_high")
-    return {"interval": ends, "range": ends, "estimate": (column.key, *ends)}.get(column.kind, (column.key,))
 
 
 def _csv_cells(column: Column, values: Sequence[Any]) -> list[Sequence[str]]:
@@ -202,11 +198,10 @@ def _cell_html(column: Column, value: Any, index: int) -> Markup:
 
 def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:
     number, pair = value
-    if pair is None:
-        return Markup(formatting.significant(number, digits))
-    return Markup('{} <span class="i">{}</span>').format(
-        formatting.significant(number, digits), formatting.interval(pair, digits)
+    ends = (
+        Markup("") if pair is None else Markup(' <span class="i">{}</span>').format(formatting.interval(pair, digits))
     )
+    return Markup(formatting.significant(number, digits)) + ends
 
 
 def _names_text(names: list[str]) -> Markup:

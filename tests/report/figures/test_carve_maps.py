@@ -21,8 +21,7 @@ from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.campaign.site_figures import model_rmse
 from skisnow.report.carving_figure import arc_through, carved_skis, contact_ends
-from skisnow.report.figures.drawing import Drawing
-from skisnow.report.figures.figure_files import PNG_WIDTH, require_drawable, write_figure
+from skisnow.report.figures.drawing import PNG_WIDTH, Drawing, require_drawable, write_figure
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.study_layout import map_layout
 from skisnow.report.study_maps import grip_map, radius_map, share_of_limit

@@ -18,6 +18,7 @@ from ...campaign import QUALITY_FLAGS
 from ...campaign.records import Campaign
 from ...estimation import Analysis
 from ...estimation.hardness import Hardness, ShearStress
+from ...estimation.parts import PenetrationAnalysis, ShearAnalysis
 from ...estimation.regressions import DENSITY_KEY, Source
 from ..formatting import counted, whole
 
@@ -116,23 +117,22 @@ class ReportData:
     def pressed(self) -> UsedTests:
         """Columns of the used penetration experiments; the value is H_V (N/mm³)."""
         part = self.analysis.penetration
-        estimates = None if part is None else (part.screened.used, part.hardness["H_V"])
-        return self._used_tests("penetration", N_PER_MM3, estimates)
+        return self._used_tests("penetration", N_PER_MM3, part, None if part is None else part.hardness["H_V"])
 
     @cached_property
     def sheared(self) -> UsedTests:
         """Columns of the used shear experiments; the value is S_f (N/mm²)."""
         part = self.analysis.shear
-        estimates = None if part is None else (part.screened.used, part.stress)
-        return self._used_tests("shear", N_PER_MM2, estimates)
+        return self._used_tests("shear", N_PER_MM2, part, None if part is None else part.stress)
 
     def _used_tests(
-        self, kind: Source, unit: float, estimates: tuple[BoolArray, Hardness | ShearStress] | None
-    ) -> UsedTests:
+        self, kind: Source, unit: float, part: PenetrationAnalysis | ShearAnalysis | None,
+        values: Hardness | ShearStress | None,
+    ) -> UsedTests:  # fmt: skip
         density = self.analysis.observations[kind].columns[DENSITY_KEY]
-        if estimates is None:
+        if part is None or values is None:
             return UsedTests(np.zeros(0, dtype=bool), np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=str), density)
-        used, values = estimates
+        used = part.screened.used
         ends = values.interval[used] / unit
         ends[~np.isfinite(ends).all(axis=1)] = np.nan
         site = texts(self.results[kind]["experiments"], "site")[used]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from operator import itemgetter
+from typing import Any, Final
 
 from markupsafe import Markup
 
@@ -20,58 +21,43 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each available result."""
-    builders = (
-        _hardness_sentence, _stress_sentence, _unloading_sentence, _displacement_sentence, _sentence_by_relation,
-        _law_sentence, _relations_sentence
-    )  # fmt: skip
-    sentences = (build(data) for build in builders)
+    sentences: list[Markup | None] = []
+    if data.penetration:
+        n = counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments")
+        name = Message("Snow hardness H_V: geometric mean")
+        sentences.append(_mean_sentence(data, data.pressed, "H_V_N_per_mm3", n, name=name))
+    if data.shear:
+        n = counted(len(data.shear), "{count} shear experiment", "{count} shear experiments")
+        name = Message("Failure shear stress S_f: mean")
+        sentences.append(_mean_sentence(data, data.sheared, "S_f_N_per_mm2", n, name=name))
+    others = (_unloading_sentence, _displacement_sentence, _sentence_by_relation, _law_sentence, _relations_sentence)
+    sentences += [build(data) for build in others]
     return [sentence for sentence in sentences if sentence is not None]
 
 
 def headline(data: ReportData) -> Markup:
     """Mean H_V with its interval, or S_f in a campaign without H_V; empty without either, and with several sites."""
-    for key, sentence, unit in (
-        ("H_V_N_per_mm3", template("Snow hardness H_V {value}, {ends}, over {sites}."), "N/mm³"),
-        ("S_f_N_per_mm2", template("Failure shear stress S_f {value}, {ends}, over {sites}."), "N/mm²"),
+    for key, sentence in (
+        ("H_V_N_per_mm3", template("Snow hardness H_V {value}, {ends}, over {sites}.")),
+        ("S_f_N_per_mm2", template("Failure shear stress S_f {value}, {ends}, over {sites}.")),
     ):
-        row = own_value(data, key)
-        if row is not None and len(_sites(data, key)) > 1:
-            break
+        row, unit = own_value(data, key), QUANTITY[key][1]
+        sites = {mean["site"] for mean in data.results["site_means"] if mean["quantity"] == key}
+        if row is not None and len(sites) <= 1:
+            ends: str = Message("without an interval")
+            if row["own_interval"] is not None:
+                ends = Message("95 % interval {ends} {unit}", ends=interval(row["own_interval"]), unit=unit)
+            value = Markup("<strong>{} {}</strong>").format(significant(row["own"]), unit)
+            return prose(sentence, value=value, ends=ends, sites=counted(len(sites), "{count} site", "{count} sites"))
         if row is not None:
-            ends = row["own_interval"]
-            return prose(
-                sentence,
-                value=Markup("<strong>{} {}</strong>").format(significant(row["own"]), unit),
-                ends=Message("without an interval")
-                if ends is None
-                else Message("95 % interval {ends} {unit}", ends=interval(ends), unit=unit),
-                sites=counted(len(_sites(data, key)), "{count} site", "{count} sites"),
-            )
+            break
     return Markup("")
-
-
-def _sites(data: ReportData, key: str) -> set[str]:
-    return {row["site"] for row in data.results["site_means"] if row["quantity"] == key}
 
 
 def own_value(data: ReportData, quantity: str) -> Json | None:
     """Mean, interval and range of a quantity in this campaign, None without a value."""
-    for row in data.results["comparisons"]:
-        if row["quantity"] == quantity and row["own"] is not None:
-            return row
-    return None
-
-
-def _hardness_sentence(data: ReportData) -> Markup | None:
-    n = counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments")
-    quantity = Quantity(Message("Snow hardness H_V: geometric mean"), "H_V", "H_V_N_per_mm3", "N/mm³", n, data.pressed)
-    return _mean_sentence(data, quantity) if data.penetration else None
-
-
-def _stress_sentence(data: ReportData) -> Markup | None:
-    n = counted(len(data.shear), "{count} shear experiment", "{count} shear experiments")
-    quantity = Quantity(Message("Failure shear stress S_f: mean"), "S_f", "S_f_N_per_mm2", "N/mm²", n, data.sheared)
-    return _mean_sentence(data, quantity) if data.shear else None
+    rows = (row for row in data.results["comparisons"] if row["quantity"] == quantity and row["own"] is not None)
+    return next(rows, None)
 
 
 def _unloading_sentence(data: ReportData) -> Markup | None:
@@ -81,12 +67,9 @@ def _unloading_sentence(data: ReportData) -> Markup | None:
         return None
     row = rows[-1]
     if row["unloading_ratio_interval"] is None:
-        upper_rebound = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
-        bound = (
-            prose("above {lower}", lower=significant(1.0 / upper_rebound))
-            if upper_rebound and upper_rebound > 0
-            else prose("not resolved")
-        )
+        upper_rebound, bound = (row["rebound_ratio_interval"] or (0.0, 0.0))[1], prose("not resolved")
+        if upper_rebound > 0:
+            bound = prose("above {lower}", lower=significant(1.0 / upper_rebound))
         return prose("Unloading ratio k_u / H_V: {bound}, from {n} series.", bound=bound, n=whole(row["n"]))
     return prose(
         "Unloading ratio k_u / H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",
@@ -153,93 +136,45 @@ def _of_sites(rows: list[Json], key: str, unit: str) -> Markup:
     return Markup("; ").join(values)
 
 
-class Quantity(NamedTuple):
-    """A measured quantity: name of its mean, symbol, key, unit, number of its experiments in words, the used ones."""
-
-    mean_name: str
-    symbol: str
-    key: str
-    unit: str
-    experiments: str
-    tests: UsedTests
-
-    @property
-    def used(self) -> str:
-        """Number of the used experiments among all, in words."""
-        return Message("{used} of {n} used", used=whole(len(self.tests)), n=self.experiments)
-
-
-def _mean_sentence(data: ReportData, quantity: Quantity) -> Markup:
-    row, sites = own_value(data, quantity.key), len(set(quantity.tests.site.tolist()))
+def _mean_sentence(data: ReportData, tests: UsedTests, key: str, experiments: str, *, name: str) -> Markup:
+    """Mean of H_V or S_f: at the only site, at each of few sites, or at the softest and the hardest of many."""
+    row, (symbol, unit) = own_value(data, key), QUANTITY[key]
     if row is None:
+        return prose("None of the {n} can be used, so there is no {symbol}.", n=experiments, symbol=html(symbol))
+    means = [mean for mean in data.results["site_means"] if mean["quantity"] == key and mean["mean"] is not None]
+    low, high = map(significant, row["own_range"])
+    fields: dict[str, Any] = {"mean_name": html(name), "unit": unit, "low": low, "high": high}
+    fields["sites"] = counted(len(means), "{count} site", "{count} sites")
+    fields["used"] = Message("{used} of {n} used", used=whole(len(tests)), n=experiments)
+    if len(means) <= 1:
         return prose(
-            "None of the {n} can be used, so there is no {symbol}.",
-            n=quantity.experiments, symbol=html(quantity.symbol),
+            "{mean_name} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used}, at {sites}.",
+            value=_strong(row["own"]), ends=_interval_text(row["own_interval"], unit, 1), **fields,
         )  # fmt: skip
-    if 1 < sites < FEWEST_SITES:
-        return _few_sites(data, quantity, row)
-    if sites > 1:
-        return _many_sites(data, quantity, row)
-    return prose(
-        "{mean_name} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used}, at {sites}.",
-        mean_name=html(quantity.mean_name),
-        value=_strong(row["own"]),
-        unit=quantity.unit,
-        ends=_interval_text(row["own_interval"], quantity.unit, sites),
-        low=significant(row["own_range"][0]),
-        high=significant(row["own_range"][1]),
-        used=quantity.used,
-        sites=counted(sites, "{count} site", "{count} sites"),
-    )
-
-
-def _many_sites(data: ReportData, quantity: Quantity, pooled: Json) -> Markup:
-    """Means of the sites from the smallest to the largest, then the mean over all sites."""
-    rows = [row for row in data.results["site_means"] if row["quantity"] == quantity.key and row["mean"] is not None]
-    rows.sort(key=lambda row: row["mean"])
+    fields["value"] = significant(row["own"])
+    if len(means) < FEWEST_SITES:
+        words = (
+            prose(
+                "{site} {value} {unit}{ends}, n = {n}",
+                site=mean["site"], value=_strong(mean["mean"]), unit=unit, n=whole(mean["n"]),
+                ends=_interval_text(mean["interval"], unit, 1),
+            )
+            for mean in means
+        )  # fmt: skip
+        return prose(
+            "{mean_name} of each site: {site_means}; {used}. Over the {sites} together {value} {unit}, without an "
+            "interval: fewer than {fewest} sites do not show how sites scatter. Single experiments {low} to {high} "
+            "{unit}.",
+            site_means=html("; ").join(words), fewest=FEWEST_SITES, **fields,
+        )  # fmt: skip
+    softest, hardest = (choose(means, key=itemgetter("mean")) for choose in (min, max))
+    fields |= {"low": _strong(softest["mean"]), "high": _strong(hardest["mean"])}
     return prose(
         "{mean_name} of each site: from {low} {unit} ({softest}) to {high} {unit} ({hardest}), at {sites}; {used}. "
         "Over all sites {value} {unit}{ends}.",
-        mean_name=html(quantity.mean_name),
-        low=_strong(rows[0]["mean"]),
-        softest=rows[0]["site"],
-        high=_strong(rows[-1]["mean"]),
-        hardest=rows[-1]["site"],
-        unit=quantity.unit,
-        sites=counted(len(rows), "{count} site", "{count} sites"),
-        used=quantity.used,
-        value=significant(pooled["own"]),
-        ends=_interval_text(pooled["own_interval"], quantity.unit, len(rows)),
-    )
-
-
-def _few_sites(data: ReportData, quantity: Quantity, pooled: Json) -> Markup:
-    """Means of the sites, and the mean over all sites without an interval."""
-    sites = [row for row in data.results["site_means"] if row["quantity"] == quantity.key]
-    site_means = [
-        prose(
-            "{site} {value} {unit}{ends}, n = {n}",
-            site=row["site"],
-            value=_strong(row["mean"]),
-            unit=quantity.unit,
-            ends=_interval_text(row["interval"], quantity.unit, 1),
-            n=whole(row["n"]),
-        )
-        for row in sites
-    ]
-    return prose(
-        "{mean_name} of each site: {site_means}; {used}. Over the {sites} together {value} {unit}, without an "
-        "interval: fewer than {fewest} sites do not show how sites scatter. Single experiments {low} to {high} {unit}.",
-        mean_name=html(quantity.mean_name),
-        site_means=html("; ").join(site_means),
-        used=quantity.used,
-        sites=counted(len(sites), "{count} site", "{count} sites"),
-        value=significant(pooled["own"]),
-        unit=quantity.unit,
-        fewest=FEWEST_SITES,
-        low=significant(pooled["own_range"][0]),
-        high=significant(pooled["own_range"][1]),
-    )
+        softest=softest["site"], hardest=hardest["site"],
+        ends=_interval_text(row["own_interval"], unit, len(means)), **fields,
+    )  # fmt: skip
 
 
 def _strong(value: float) -> Markup:
@@ -259,12 +194,16 @@ def _law_sentence(data: ReportData) -> Markup | None:
     if selected is None:
         return None
     law = Markup("<strong>F = {}</strong>").format(html(formula(selected["id"])))
-    names = {row["id"]: Message("the row {name}", name=model_name(row["id"]))
-             for row in data.results["penetration"]["models"]}  # fmt: skip
+    models = {row["id"] for row in data.results["penetration"]["models"]}
     reason: Message = selected["reason"]
-    fields = {key: names.get(value, value) for key, value in reason.fields.items()}
-    reason_words = html(Message(reason.template, **fields))
-    sentences = [prose("Selected law of the penetration force: {law}.", law=law), reason_words]
+    fields = {
+        key: Message("the row {name}", name=model_name(value)) if value in models else value
+        for key, value in reason.fields.items()
+    }
+    sentences = [
+        prose("Selected law of the penetration force: {law}.", law=law),
+        html(Message(reason.template, **fields)),
+    ]
     if selected["id"] == "H_V:a=none,b=one":
         sentences.append(prose("This is the law that the paper proposes (its Eqn 12)."))
     return Markup(" ").join(sentences)
@@ -275,18 +214,19 @@ def _relations_sentence(data: ReportData) -> Markup | None:
     withheld = [row for row in data.results["regressions"] if row["withheld"]]
     if not judged and not withheld:
         return None
-    lists = {
-        "yes": _regression_list([row for row in judged if row["p"] < SIGNIFICANT]),
-        "no": _regression_list([row for row in judged if row["p"] >= SIGNIFICANT]),
-    }
+    words = template("Relations: significant at 5 %: {yes}; not significant: {no}.")
     if withheld:
-        sentence = prose(
+        words = template(
             "Relations: significant at 5 %: {yes}; not significant: {no}; not judged, as the predictor takes fewer "
-            "than {few} different values: {rows}.",
-            few=FEWEST_VALUES, rows=_regression_list(withheld), **lists,
-        )  # fmt: skip
-    else:
-        sentence = prose("Relations: significant at 5 %: {yes}; not significant: {no}.", **lists)
+            "than {few} different values: {rows}."
+        )
+    sentence = prose(
+        words,
+        yes=_regression_list([row for row in judged if row["p"] < SIGNIFICANT]),
+        no=_regression_list([row for row in judged if row["p"] >= SIGNIFICANT]),
+        few=FEWEST_VALUES,
+        rows=_regression_list(withheld),
+    )
     return prose("{relations} How large each slope could still be is listed with the regressions.", relations=sentence)
 
 

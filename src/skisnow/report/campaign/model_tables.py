@@ -98,12 +98,8 @@ def _rows_in_html(data: ReportData) -> int:
 
 def _coefficients(row: Json) -> list[tuple[float | None, Any]]:
     """Value and interval of each coefficient; None for a coefficient that the model does not have."""
-    return [(row[name] if _has_coefficient(row, name) else None, row["intervals"][name]) for name in COEFFICIENTS]
-
-
-def _has_coefficient(row: Json, name: str) -> bool:
-    form = row[name[0]]
-    return form == "linear" if name.endswith("1") else form != "none"
+    forms = {"0": ("one", "constant", "linear"), "1": ("linear",)}
+    return [(row[name] if row[name[0]] in forms[name[1]] else None, row["intervals"][name]) for name in COEFFICIENTS]
 
 
 def nested_table(data: ReportData) -> Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -18,8 +18,7 @@ from ..._support.staging import prepare_folder, staged, write_file
 from ...campaign import Campaign
 from ...estimation import Analysis
 from ...estimation.results import results_pieces
-from ..figures.drawing import Drawing, LeftOut, Picture
-from ..figures.figure_files import Progress, picture_files, silent, write_pictures
+from ..figures.drawing import Drawing, LeftOut, Picture, Progress, picture_files, silent, write_pictures
 from ..figures.style import SiteStyle, site_styles
 from ..formatting import days_words, moment_words, significant
 from ..sheet import bibtex, cited_text, render_template
@@ -31,14 +30,7 @@ from .penetration_figures import force_depth, hardness_density, hardness_mean_fo
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
 from .site_figures import model_rmse, residuals, sites, snow_profiles
 from .tables import campaign_tables
-from .verdicts import (
-    caveats,
-    procedure_comparison,
-    readings_used,
-    seating_findings,
-    unloading_findings,
-    verdicts,
-)
+from .verdicts import caveats, procedure_comparison, readings_used, seating_findings, unloading_finding, verdicts
 
 RESULTS: Final = "results.json"
 SECTIONS: Final = {
@@ -131,15 +123,10 @@ def _write(data: ReportData, stage: Path, language: str, report: Progress) -> li
         write_file(stage / "report.html", page(data, tables, pictures, missing))
     report("results.json")
     write_file(stage / RESULTS, results_pieces(data.results))
-    stale = [f"tables/{stem}{ending}" for stem in _stale_stems(all_tables.values()) for ending in (".csv", ".tex")]
+    stems = {replace(table, synthetic=mark).file_stem for table in all_tables.values() for mark in (False, True)}
+    stems -= {table.file_stem for table in tables.values()}
+    stale = [f"tables/{stem}{ending}" for stem in sorted(stems) for ending in (".csv", ".tex")]
     return stale + picture_files(left_out.name for left_out in missing)
-
-
-def _stale_stems(tables: Iterable[Table]) -> Iterator[str]:
-    """Stems of obsolete table files: both stems of an empty table, otherwise the one with the other synthetic mark."""
-    for table in tables:
-        stems = {replace(table, synthetic=synthetic).file_stem for synthetic in (False, True)}
-        yield from sorted(stems - {table.file_stem} if table.rows else stems)
 
 
 def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]) -> str:
@@ -151,8 +138,8 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
         caveats=caveats(data),
         readings_used=readings_used(data),
         procedures_compared=procedure_comparison(data),
-        seating_found=seating_findings(data),
-        unloading_found=unloading_findings(data),
+        seating_found=list(seating_findings(data)),
+        unloading_found=[unloading_finding(data)],
         tables=defaultdict(Markup, tables_html(tables)),
         pictures=pictures,
         missing=missing,
@@ -205,18 +192,16 @@ def _frame(data: ReportData) -> dict[str, Any]:
 
 
 def _stated_uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
-    def in_words(key: str, unit: str) -> str:
-        value = campaign[key]
-        return Message("not stated, counted as 0") if value is None else f"{significant(value)} {unit}"
-
-    gauge = campaign["gauge_resolution_mm"]
+    not_stated = Message("not stated, counted as 0")
+    fields = {
+        "gauge": ("gauge_resolution_mm", "mm", Message("not stated, so that no depth uncertainty is counted")),
+        "load": ("load_uncertainty_N", "N", not_stated),
+        "moment": ("moment_uncertainty_Nm", "N m", not_stated),
+        "lever_arm": ("lever_arm_uncertainty_mm", "mm", not_stated),
+    }
     return {
-        "gauge": Message("not stated, so that no depth uncertainty is counted")
-        if gauge is None
-        else f"{significant(gauge)} mm",
-        "load": in_words("load_uncertainty_N", "N"),
-        "moment": in_words("moment_uncertainty_Nm", "N m"),
-        "lever_arm": in_words("lever_arm_uncertainty_mm", "mm"),
+        name: words if campaign[key] is None else f"{significant(campaign[key])} {unit}"
+        for name, (key, unit, words) in fields.items()
     }
 
 

@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ..._support.arrays import FloatArray
-from ..._support.messages import Message
+from ..._support.messages import Message, template
 from ..._support.units import MM
-from ...campaign.records import PenetrationTests
 from ...estimation.regressions import PEN_FORCE_KEY
 from ...geometry import in_form
 from ..charts import law_of_series
@@ -55,12 +54,13 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
     rows = list(enumerate(data.penetration))
     series = [[i for i, row in rows if row["used"] and row["edge_angle_deg"] == angle] for angle in angles]
     drawn = [_evenly_spaced(indices, data) for indices in series]
-    counts = [(angle, len(some), len(all_)) for angle, some, all_ in zip(angles, drawn, series, strict=True)]
-    max_depths = [np.array([tests.series(i).penetration_depth.max() for i in some]) for some in drawn]
-    wide_range = any(spans_a_decade(depths) for depths in max_depths)
+    counts = list(zip(angles, map(len, drawn), map(len, series), strict=True))
+    wide_range = any(
+        spans_a_decade(np.array([tests.series(i).penetration_depth.max() for i in some])) for some in drawn
+    )
     for panel, angle, indices in zip(panels, angles, drawn, strict=True):
-        for handle in _draw_panel(panel, data, tests, indices, styles, wide_range=wide_range):
-            handles.setdefault(str(handle.get_label()), handle)
+        drawn_sites = _draw_panel(panel, data, indices, styles, wide_range=wide_range)
+        handles |= {str(handle.get_label()): handle for handle in drawn_sites}
         panel.set_title(_angle_name(angle), loc="left")
     panels[0].set_ylabel(Message("load $F$ (N)"))
     mark_synthetic(data, panels[-1])
@@ -98,21 +98,26 @@ def _evenly_spaced(indices: list[int], data: ReportData) -> list[int]:
 
 
 def _draw_panel(
-    panel: Axes,
-    data: ReportData,
-    tests: PenetrationTests,
-    indices: list[int],
-    styles: Sequence[SiteStyle],
-    *,
-    wide_range: bool,
+    panel: Axes, data: ReportData, indices: list[int], styles: Sequence[SiteStyle], *, wide_range: bool
 ) -> list[Line2D]:
-    depth = np.concatenate([tests.series(i).penetration_depth for i in indices]) / MM
-    load = np.concatenate([tests.series(i).load for i in indices])
-    site = np.repeat([tests.site[i] for i in indices], [len(tests.series(i).load) for i in indices])
-    for style, mask in masks(styles, np.array([tests.site[i] for i in indices])):
+    """Draw the readings of series and the law F = H_V V of each; returns the handles of the legend."""
+    tests, penetration = data.campaign.penetration, data.analysis.penetration
+    assert tests is not None
+    assert penetration is not None
+    every = {index: tests.series(index) for index in indices}
+    depth = np.concatenate([series.penetration_depth for series in every.values()]) / MM
+    load = np.concatenate([series.load for series in every.values()])
+    names = np.array([tests.site[index] for index in indices])
+    site = np.repeat(names, [len(series.load) for series in every.values()])
+    for style, mask in masks(styles, names):
         for index in np.array(indices)[mask].tolist():
-            e, F = _fitted_law(data, tests, index, wide_range)
-            panel.plot(e, F, color=style.colour, linewidth=0.6, alpha=0.75, zorder=2)
+            series = every[index]
+            deepest = float(series.penetration_depth.max())
+            e = np.geomspace(deepest * 1e-3, deepest, 60) if wide_range else np.linspace(0.0, deepest, 60)
+            tool = in_form(data.campaign.tools[series.tool], data.analysis.geometry)
+            hardness = float(penetration.hardness["H_V"].value[index])
+            line = law_of_series(tool, series.edge_angle, hardness, e)
+            panel.plot(*line, color=style.colour, linewidth=0.6, alpha=0.75, zorder=2)
     handles = scatter(panel, depth, load, site, styles, size=3.0)
     if wide_range:
         logarithmic(panel, "x", depth)
@@ -124,20 +129,13 @@ def _draw_panel(
     return handles
 
 
-def _fitted_law(
-    data: ReportData, tests: PenetrationTests, index: int, wide_range: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Depths and loads of F = H_V V for one series (m, N)."""
-    series, penetration = tests.series(index), data.analysis.penetration
-    assert penetration is not None  # there are tests
-    max_depth = float(series.penetration_depth.max())
-    e = np.geomspace(max_depth * 1e-3, max_depth, 60) if wide_range else np.linspace(0.0, max_depth, 60)
-    tool = in_form(data.campaign.tools[series.tool], data.analysis.geometry)
-    return law_of_series(tool, series.edge_angle, float(penetration.hardness["H_V"].value[index]), e)
-
-
 def _force_caption(counts: list[tuple[float, int, int]], n_other: int, *, wide_range: bool) -> Markup:
-    panels = [_panel_words(angle, shown, total) for angle, shown, total in counts]
+    panels = []
+    for angle, shown, total in counts:
+        words = template("{shown} of {total} ({angle})")
+        if shown < total:
+            words = template("{shown} of {total} ({angle}), evenly spaced in the rank of their hardness")
+        panels.append(str(Message(words, shown=whole(shown), total=whole(total), angle=_angle_name(angle))))
     caption = prose(
         "Load against penetration depth (the paper's Fig. 5). Symbols: readings by site; lines: F = H_V V with each "
         "series' own H_V, which meets the reading under the largest load by definition. Series shown: {panels}.",
@@ -151,13 +149,6 @@ def _force_caption(counts: list[tuple[float, int, int]], n_other: int, *, wide_r
             "slope 1 for a flat tool and 2 for a wedge; readings of depth 0 have no place on them."
         )
     return caption
-
-
-def _panel_words(angle: float, shown: int, total: int) -> str:
-    fields = {"shown": whole(shown), "total": whole(total), "angle": _angle_name(angle)}
-    if shown < total:
-        return str(Message("{shown} of {total} ({angle}), evenly spaced in the rank of their hardness", **fields))
-    return str(Message("{shown} of {total} ({angle})", **fields))
 
 
 def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:

@@ -84,16 +84,9 @@ def count_resolved_offsets(rows: list[Json]) -> int:
 
 def seating_quantiles_table(data: ReportData) -> Table:
     """Quantiles over the used series of the depth zero's offset, and of the change of H_V if it is subtracted."""
-    offsets, changes = numbers(data.seating, "depth_offset_mm"), numbers(data.seating, "H_V_change_percent")
     names = {0.0: Message("minimum"), 50.0: Message("median"), 100.0: Message("maximum")}
-    rows = [
-        (
-            names.get(percent, f"{percent:g} %"),
-            _percentile_or_none(offsets, percent),
-            _percentile_or_none(changes, percent),
-        )
-        for percent in QUANTILES
-    ]
+    quantiles = (names.get(percent, f"{percent:g} %") for percent in QUANTILES)
+    offsets, changes = (_quantiles(numbers(data.seating, key)) for key in ("depth_offset_mm", "H_V_change_percent"))
     return Table(
         "seating_distribution",
         Message(
@@ -105,13 +98,13 @@ def seating_quantiles_table(data: ReportData) -> Table:
             Column("depth_offset_mm", Message("offset δ"), unit="mm"),
             Column("H_V_change_percent", Message("H_V would change by"), unit="%"),
         ),
-        rows if data.seating else [],
+        list(zip(quantiles, offsets, changes, strict=True)) if data.seating else [],
     )
 
 
-def _percentile_or_none(values: FloatArray, percent: float) -> float | None:
+def _quantiles(values: FloatArray) -> list[float | None]:
     finite = values[np.isfinite(values)]
-    return float(np.percentile(finite, percent)) if finite.size else None
+    return np.percentile(finite, QUANTILES).tolist() if finite.size else [None] * len(QUANTILES)
 
 
 def seating_largest_table(data: ReportData) -> Table:
@@ -119,15 +112,10 @@ def seating_largest_table(data: ReportData) -> Table:
     changes = numbers(data.seating, "H_V_change_percent")
     factors = np.abs(np.log(np.maximum(1.0 + changes / 100.0, 1e-6)))
     order = np.argsort(-factors, kind="stable")[: min(LARGEST, int(np.isfinite(factors).sum()))]
-    caption = (
-        Message(
-            "The {largest} used series whose H_V would change most, by factor, if their offset were taken off.",
-            largest=LARGEST,
-        )
-        if len(order) == LARGEST
-        else Message(
-            "The used series in the order of how much H_V would change, by factor, if their offset were taken off."
-        )
+    caption = Message(
+        "The used series in the order of how much H_V would change, by factor, if their offset were taken off; at most "
+        "{largest} are shown.",
+        largest=LARGEST,
     )
     columns = (EXPERIMENT, SITE, ANGLE, HARDNESS, _OFFSET, _CHANGE)
     return record_table("seating_largest", caption, columns, [data.seating[index] for index in order.tolist()])

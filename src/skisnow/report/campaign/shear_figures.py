@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from operator import itemgetter
 from typing import Final
 
 import numpy as np
@@ -106,12 +107,17 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
                 _draw_line(plot.axes, row, theta[mask & (site == row["group"])], colour=style.colour, x_unit=DEGREE)
     _angle_axis(plot.axes)
     plot.start_at_zero("y", stress, 1.08)
-    judgements = "; ".join(map(_p_value_text, rows[:MOST_SENTENCES]))
+    judgements = (
+        str(Message("{site}: n = {n}, too few different angles to judge", site=row["group"], n=row["n"]))
+        if row["withheld"]
+        else f"{row['group']}: n = {row['n']}, {p_equals(row['p'])}"
+        for row in rows[:MOST_SENTENCES]
+    )
     caption = prose(
         "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), "
         "with the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn "
         "only where p < 0.05. {judgements}.",
-        judgements=judgements,
+        judgements="; ".join(judgements),
     )
     alt = Message("Failure shear stress against edge angle in degrees, by site.")
     return Drawing(name, caption, alt, plot.finish(), points=len(stress))
@@ -121,12 +127,6 @@ def _edge_angles(data: ReportData) -> FloatArray:
     """Edge angle of each used shear experiment (rad)."""
     tests = data.campaign.shear
     return np.zeros(0) if tests is None else tests.edge_angle[data.sheared.used]
-
-
-def _p_value_text(row: Json) -> str:
-    if row["withheld"]:
-        return str(Message("{site}: n = {n}, too few different angles to judge", site=row["group"], n=row["n"]))
-    return f"{row['group']}: n = {row['n']}, {p_equals(row['p'])}"
 
 
 def _angle_axis(axes: Axes) -> None:
@@ -140,12 +140,8 @@ def _is_significant(row: Json) -> bool:
 
 def softest_varied(data: ReportData) -> tuple[Json, float] | None:
     """Regression of the site with varied angle whose stress at 90° is lowest, and that stress (N/mm²)."""
-    upright = [(row["b"][0] + row["b"][1] * math.pi / 2.0, row) for row in varied_sites(data)]
-    positive = [pair for pair in upright if pair[0] > 0]
-    if not positive:
-        return None
-    stress, row = min(positive, key=lambda pair: pair[0])
-    return row, stress
+    upright = ((row, row["b"][0] + row["b"][1] * math.pi / 2.0) for row in varied_sites(data))
+    return min((pair for pair in upright if pair[1] > 0), key=itemgetter(1), default=None)
 
 
 def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
@@ -183,8 +179,7 @@ def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | L
     name, title = "fig10_stress_density", Message("Failure shear stress against density")
     if not len(data.sheared):
         return LeftOut(name, title, Message("no shear experiment is used"))
-    tests = data.sheared
-    finite = np.isfinite(tests.density)
+    tests, finite = data.sheared, np.isfinite(data.sheared.density)
     if not finite.any():
         return LeftOut(name, title, Message("the campaign gives no snow density at its shear experiments"))
     density, stress = tests.density[finite], tests.value[finite]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -55,14 +55,14 @@ _SITES: Final = (
 
 def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Mean of each site with its 95 % interval and its letters, above the single experiments."""
-    name = "sites"
+    name, title = "sites", Message("Sites compared")
     rows = {key: [row for row in data.results["site_means"] if row["quantity"] == key] for key, _ in _SITES}
     panels = [(key, label) for key, label in _SITES if len(rows[key]) > 1 and numbers(rows[key], "mean").min() > 0]
+    most = max((len(rows[key]) for key, _ in panels), default=0)
     if not panels:
-        return LeftOut(name, Message("Sites compared"), Message("no two sites have used experiments of one kind"))
-    if max(len(rows[key]) for key, _ in panels) > MOST_SITES:
-        return LeftOut(name, Message("Sites compared"), Message("there are more than {most} sites", most=MOST_SITES))
-    most = max(len(rows[key]) for key, _ in panels)
+        return LeftOut(name, title, Message("no two sites have used experiments of one kind"))
+    if most > MOST_SITES:
+        return LeftOut(name, title, Message("there are more than {most} sites", most=MOST_SITES))
     names = {row["site"]: _site_lines(row["site"], most) for key, _ in panels for row in rows[key]}
     row_mm = _TWO_LINES_MM if any("\n" in name for name in names.values()) else _ROW_MM
     figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + row_mm * most)
@@ -198,11 +198,12 @@ _WIDE_RATIO: Final = 20.0
 
 def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """Dot chart of the rmse in this campaign (filled) and in the paper (open)."""
+    name, title = "model_rmse", Message("rmse of the nine laws")
     rows = [row for row in data.results["penetration"]["models"] if row["n"]]
     if not rows:
-        return LeftOut("model_rmse", Message("rmse of the nine laws"), Message("no penetration experiment is used"))
+        return LeftOut(name, title, Message("no penetration experiment is used"))
     if data.results["penetration"]["selected"] is None:
-        return LeftOut("model_rmse", Message("rmse of the nine laws"), TOO_FEW)
+        return LeftOut(name, title, TOO_FEW)
     own = [row["rmse_N"] for row in rows]
     printed = [PRINTED_RMSE_N.get(row["id"], math.nan) for row in rows]
     finite = [value for value in own + printed if math.isfinite(value)]
@@ -210,8 +211,10 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
     axes = figure.add_subplot()
     places = range(len(rows))
     axes.hlines(places, own, printed, color=PALE, linewidth=0.7, zorder=1)
-    axes.plot(printed, places, linestyle="none", marker="D", color=VERMILLION, markerfacecolor="white", zorder=3)
-    axes.plot(own, places, linestyle="none", marker="o", color=BLUE, markersize=4.4, zorder=4)
+    dots: dict[str, Any] = {"linestyle": "none", "marker": "D", "color": VERMILLION, "markerfacecolor": "white"}
+    axes.plot(printed, places, zorder=3, label=Message("paper, printed"), **dots)
+    dots = {"linestyle": "none", "marker": "o", "color": BLUE, "markersize": 4.4}
+    axes.plot(own, places, zorder=4, label=Message("this campaign"), **dots)
     axes.set_yticks(list(places), [_line_label(row, data) for row in rows])
     axes.invert_yaxis()
     if max(finite) > _WIDE_RATIO * max(min(finite), 1e-9):
@@ -223,25 +226,13 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
     axes.grid(axis="x", color="#E6E6E6", linewidth=0.5)
     axes.set_axisbelow(True)
     mark_synthetic(data, axes)
-    handles = [
-        Line2D([], [], linestyle="none", marker="o", color=BLUE, markersize=4.4, label=Message("this campaign")),
-        Line2D(
-            [],
-            [],
-            linestyle="none",
-            marker="D",
-            color=VERMILLION,
-            markerfacecolor="white",
-            label=Message("paper, printed"),
-        ),
-    ]
-    legend_below(figure, handles)
+    legend_below(figure, axes.get_lines()[::-1])
     caption = prose(
         "Root-mean-square error of the nine laws over all readings, with the values printed by Mössner and others "
         "(2013) for their data, which are not public. The pointer marks the selected law."
     )
     alt = Message("Dot chart of the rmse of nine laws, this campaign and the paper.")
-    return Drawing("model_rmse", caption, alt, figure)
+    return Drawing(name, caption, alt, figure)
 
 
 def _line_label(row: Json, data: ReportData) -> str:
@@ -255,13 +246,11 @@ def _line_label(row: Json, data: ReportData) -> str:
 
 def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """Force of the selected model minus applied load, with median and 90 % range along the load."""
-    penetration = data.analysis.penetration
+    name, title, penetration = "residuals", Message("Residuals of the selected law"), data.analysis.penetration
     if penetration is None or penetration.table is None:
-        return LeftOut(
-            "residuals", Message("Residuals of the selected law"), Message("no penetration experiment is used")
-        )
+        return LeftOut(name, title, Message("no penetration experiment is used"))
     if penetration.selected is None:
-        return LeftOut("residuals", Message("Residuals of the selected law"), TOO_FEW)
+        return LeftOut(name, title, TOO_FEW)
     readings = penetration.readings.of(penetration.screened.used)
     selected = penetration.selected
     hardness = penetration.hardness[selected.model.hardness].value[penetration.screened.used]
@@ -271,16 +260,9 @@ def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     part = thinned(readings.n)
     axes.plot(
-        readings.load[part],
-        residual[part],
-        linestyle="none",
-        marker=".",
-        markersize=3.0,
-        markeredgewidth=0.0,
-        color=PALE,
+        readings.load[part], residual[part], ".", markersize=3.0, markeredgewidth=0.0, color=PALE, zorder=2,
         rasterized=readings.n > RASTERISE_FROM,
-        zorder=2,
-    )
+    )  # fmt: skip
     _draw_ranges_by_load(axes, readings.load, residual)
     axes.set_xlabel(Message("load $F$ (N)"))
     axes.set_ylabel(Message("law − load (N)"))
@@ -296,7 +278,7 @@ def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         rmse=significant(selected.rmse, 4),
     )
     alt = Message("Residuals of the selected law in newtons against the load in newtons.")
-    return Drawing("residuals", caption, alt, figure, points=readings.n)
+    return Drawing(name, caption, alt, figure, points=readings.n)
 
 
 def _force(fit: ModelFit, hardness: FloatArray, readings: Readings) -> FloatArray:

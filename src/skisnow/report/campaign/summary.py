@@ -88,12 +88,8 @@ def analysis_dataset(analysis: Analysis) -> Dataset:
         rows = _rows(analysis, kind)
         for name in rows[0] if rows else ():
             column = np.array([math.nan if row[name] is None else row[name] for row in rows])
-            unit = unit_of_name(name).symbol
-            variables[f"{kind}_{name}"] = (
-                f"{kind}_experiment",
-                column,
-                {"units": unit.replace("°", "degree")} if unit else {},
-            )
+            unit = unit_of_name(name).symbol.replace("°", "degree")
+            variables[f"{kind}_{name}"] = f"{kind}_experiment", column, {"units": unit} if unit else {}
     return xarray.Dataset(variables, attrs={"campaign": analysis.campaign.name})
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 
-from ..._support.arrays import BoolArray
 from ..._support.messages import Message
 from ...campaign import QUALITY_FLAGS
 from ...estimation.comparisons import own_mean
@@ -39,17 +37,14 @@ _PUBLISHED: Final = {
 
 def sites_table(data: ReportData) -> Table:
     """Mean and range of H_V and S_f for each site, and for all if there are several."""
-    n_penetration = Counter(row["site"] for row in data.penetration)
-    n_shear = Counter(row["site"] for row in data.shear)
-    rows = []
-    for site in data.sites:
-        hardness = _mean_and_range(data.pressed, data.pressed.site == site, geometric=True)
-        stress = _mean_and_range(data.sheared, data.sheared.site == site, geometric=False)
-        rows.append((site, n_penetration[site], *hardness, n_shear[site], *stress))
+    groups: dict[str, tuple[str, ...]] = {site: (site,) for site in data.sites}
     if len(data.sites) > 1:
-        hardness = _mean_and_range(data.pressed, slice(None), geometric=True)
-        stress = _mean_and_range(data.sheared, slice(None), geometric=False)
-        rows.append((Message("all sites"), len(data.penetration), *hardness, len(data.shear), *stress))
+        groups[Message("all sites")] = data.sites
+    rows = []
+    for name, sites in groups.items():
+        pressed, sheared = (sum(row["site"] in sites for row in tests) for tests in (data.penetration, data.shear))
+        hardness = _mean_and_range(data.pressed, sites, geometric=True)
+        rows.append((name, pressed, *hardness, sheared, *_mean_and_range(data.sheared, sites, geometric=False)))
     return Table(
         "sites",
         Message("Snow hardness and failure shear stress by site, with 95 % intervals of the means."),
@@ -73,12 +68,13 @@ def sites_table(data: ReportData) -> Table:
     )
 
 
-def _mean_and_range(tests: UsedTests, chosen: BoolArray | slice, *, geometric: bool) -> tuple[Any, ...]:
+def _mean_and_range(tests: UsedTests, sites: tuple[str, ...], *, geometric: bool) -> tuple[Any, ...]:
     """Number of values, mean with interval, minimum and maximum."""
-    values, sites = tests.value[chosen], tests.site[chosen]
+    chosen = np.isin(tests.site, sites)
+    values = tests.value[chosen]
     if len(values) == 0:
         return 0, (None, None), None
-    mean = own_mean(values, sites.tolist(), geometric=geometric)
+    mean = own_mean(values, tests.site[chosen].tolist(), geometric=geometric)
     interval = (mean.low, mean.high) if np.isfinite(mean.low) and np.isfinite(mean.high) else None
     value = mean.value if np.isfinite(mean.value) else None
     return len(values), (value, interval), (mean.minimum, mean.maximum) if np.isfinite(mean.minimum) else None
@@ -165,7 +161,7 @@ def regressions_table(data: ReportData) -> Table:
             Column("F", "F"),
             Column("p", "p", "p"),
         ),
-        [_regression_row(row) for row in data.results["regressions"]],
+        list(map(_regression_row, data.results["regressions"])),
         note=Message(
             "Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
             "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent "
@@ -196,7 +192,7 @@ def weather_table(data: ReportData) -> Table:
     """Means of the weather at the experiments, by site."""
     weather = data.results["weather"]
     columns = (
-        Column("site", Message("Site"), "text"),
+        series_tables.SITE,
         Column("n", Message("experiments"), "count"),
         Column("air_temperature_C", Message("air"), unit="°C"),
         Column("relative_humidity_percent", Message("humidity"), unit="%"),
@@ -291,49 +287,42 @@ def files_table(data: ReportData) -> Table:
     )
 
 
-_FILE: Final = (Column("file", Message("file"), "text"), Column("row", Message("row"), "count"))
-_EXPERIMENT: Final = Column("experiment", Message("experiment"), "text")
-_COLUMN: Final = Column("column", Message("column"), "text")
-
-
-def _text_columns(headers: dict[str, Message]) -> tuple[Column, ...]:
-    return tuple(Column(key, header, "text") for key, header in headers.items())
+_CELL_HEADERS: Final = {
+    name: Column(name, header, "count" if name == "row" else "text")
+    for name, header in {
+        "file": Message("file"), "row": Message("row"), "experiment": Message("experiment"),
+        "column": Message("column"), "old": Message("old"), "new": Message("new"), "who": Message("who"),
+        "when": Message("when"), "why": Message("why"), "severity": Message("severity"), "code": Message("code"),
+        "value": Message("value"), "allowed": Message("allowed"), "action": Message("action"),
+    }.items()
+}  # fmt: skip
+"""Columns of tables about single cells of the campaign's files."""
 
 
 def corrections_table(data: ReportData) -> Table:
     """Every cell whose value a correction replaces."""
-    headers = {"old": Message("old"), "new": Message("new"), "who": Message("who"), "when": Message("when"),
-               "why": Message("why")}  # fmt: skip
-    columns = (*_FILE, _EXPERIMENT, _COLUMN, *_text_columns(headers))
+    names = ("file", "row", "experiment", "column", "old", "new", "who", "when", "why")
     caption = Message("Corrections applied when the files were read; the raw files keep the old values.")
+    columns = tuple(_CELL_HEADERS[name] for name in names)
     return record_table("corrections", caption, columns, data.results["campaign"]["corrections"])
 
 
 def warnings_table(data: ReportData) -> Table:
     """Every warning of the campaign reader."""
-    first = {"severity": Message("severity"), "code": Message("code")}
-    last = {"value": Message("value"), "allowed": Message("allowed"), "action": Message("action")}
-    columns = (*_text_columns(first), *_FILE, _COLUMN, _EXPERIMENT, *_text_columns(last))
+    names = ("severity", "code", "file", "row", "column", "experiment", "value", "allowed", "action")
     caption = Message("Warnings of reading the campaign's files.")
+    columns = tuple(_CELL_HEADERS[name] for name in names)
     return record_table("warnings", caption, columns, data.results["campaign"]["warnings"], rows_in_html=50)
 
 
 def quality_flags_table(data: ReportData) -> Table:
     """Every quality flag with the experiments that have it."""
-    penetration, shear = _experiments_by_flag(data.penetration), _experiments_by_flag(data.shear)
-    excluding = data.results["campaign"]["excluding"]
-    rows = [
-        (
-            code,
-            flag.sentence,
-            code in excluding,
-            len(penetration.get(code, ())),
-            penetration.get(code, []),
-            len(shear.get(code, ())),
-            shear.get(code, []),
+    excluding, rows = data.results["campaign"]["excluding"], []
+    for code, flag in QUALITY_FLAGS.items():
+        penetration, shear = (
+            [row["experiment"] for row in tests if code in row["flags"]] for tests in (data.penetration, data.shear)
         )
-        for code, flag in QUALITY_FLAGS.items()
-    ]
+        rows.append((code, flag.sentence, code in excluding, len(penetration), penetration, len(shear), shear))
     return Table(
         "marks",
         Message(
@@ -351,14 +340,6 @@ def quality_flags_table(data: ReportData) -> Table:
         ),
         rows,
     )
-
-
-def _experiments_by_flag(rows: list[Json]) -> dict[str, list[str]]:
-    experiments: dict[str, list[str]] = {}
-    for row in rows:
-        for code in row["flags"]:
-            experiments.setdefault(code, []).append(row["experiment"])
-    return experiments
 
 
 BUILDERS: Final = (

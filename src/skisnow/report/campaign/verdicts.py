@@ -16,10 +16,8 @@ from ...campaign.records import Campaign
 from ...estimation.group_comparisons import DIFFERENCE, LEVEL, compare_campaign
 from ...estimation.screening import screened_both
 from ..formatting import html, prose, significant, whole
-from .data import ReportData, numbers, pairs
+from .data import Json, ReportData, numbers, pairs
 from .series_tables import count_resolved_offsets
-
-Json = dict[str, Any]
 
 MOST_PAIRS: Final = 3
 """Pairs that each have a sentence; of more pairs, only those that are not certain have one, up to this number."""
@@ -73,20 +71,16 @@ def _row_verdicts(rows: list[Json], difference: float) -> list[Message]:
     kinds: dict[tuple[str, str], list[Json]] = {}
     for row in rows:
         kinds.setdefault((row["quantity"], row["by"]), []).append(row)
-    return [
-        sentence
-        for (quantity, by), mine in kinds.items()
-        for sentence in _kind_verdicts(mine, quantity, by, difference)
-    ]
-
-
-def _kind_verdicts(rows: list[Json], quantity: str, by: str, difference: float) -> Iterator[Message]:
-    if len(rows) > MOST_PAIRS:
-        uncertain = [row for row in rows if not _is_certain(row)]
-        if by == "site":
-            yield _survey_sentence(rows, quantity, len(rows) - len(uncertain))
-        rows = sorted(uncertain, key=lambda row: row["p"] if _is_number(row["p"]) else 2.0)[:MOST_PAIRS]
-    yield from (verdict(row, difference) for row in rows)
+    sentences = []
+    for (quantity, by), of_kind in kinds.items():
+        shown = of_kind
+        if len(of_kind) > MOST_PAIRS:
+            uncertain = [row for row in of_kind if not _is_certain(row)]
+            shown = sorted(uncertain, key=lambda row: row["p"] if _is_number(row["p"]) else 2.0)[:MOST_PAIRS]
+            if by == "site":
+                sentences.append(_survey_sentence(of_kind, quantity, len(of_kind) - len(uncertain)))
+        sentences += [verdict(row, difference) for row in shown]
+    return sentences
 
 
 def _survey_sentence(rows: list[Json], quantity: str, certain: int) -> Message:
@@ -112,41 +106,33 @@ def verdict(row: Json, difference_percent: float) -> Message:
     difference_percent: the difference that ``n_needed`` of the row is for.
     """
     comparison, ends = _comparison(row)
-    limit = 1.0 + difference_percent / 100.0
-    if _is_certain(row) and row["n_pairs"] > 1:
-        return Message(
-            "{comparison}: certain ({p}, corrected for {pairs} pairs).",
-            comparison=comparison, p=_p_text(row["p_holm"]), pairs=row["n_pairs"],
-        )  # fmt: skip
+    limit, needed, several = 1.0 + difference_percent / 100.0, row["n_needed"], row["n_pairs"] > 1
+    p = row["p_holm"] if several else row["p"]
+    fields = {"comparison": comparison, "p": _p_text(p) if _is_number(p) else "", "pairs": row["n_pairs"]}
     if _is_certain(row):
-        return Message("{comparison}: certain ({p}).", comparison=comparison, p=_p_text(row["p"]))
-    if ends is None or row["n_needed"] is None:
+        if several:
+            return Message("{comparison}: certain ({p}, corrected for {pairs} pairs).", **fields)
+        return Message("{comparison}: certain ({p}).", **fields)
+    if ends is None or needed is None:
         return Message(
-            "{comparison}: not certain. Repeat the test in one of the groups: the scatter is unknown.",
-            comparison=comparison,
+            "{comparison}: not certain. Repeat the test in one of the groups: the scatter is unknown.", **fields
         )
     if 1.0 / limit < ends[0] and ends[1] < limit:
-        return Message(
-            "{comparison}: the difference is below {difference:.3g} %.",
-            comparison=comparison, difference=difference_percent,
-        )  # fmt: skip
-    more = sum(max(row["n_needed"] - n, 0) for n in (row["n_a"], row["n_b"]))
-    uncertain = Message("{comparison}: not certain", comparison=comparison)
-    if row["n_pairs"] > 1:
-        uncertain = Message(
-            "{comparison}: not certain ({p}, corrected for {pairs} pairs)",
-            comparison=comparison, p=_p_text(row["p_holm"]), pairs=row["n_pairs"],
-        )  # fmt: skip
-    if more == 0:
-        return Message(
-            "{uncertain}. The tests suffice to find a difference of {difference:.3g} % in four of five cases.",
-            uncertain=uncertain, difference=difference_percent,
-        )  # fmt: skip
-    return Message(
+        words = template("{comparison}: the difference is below {difference:.3g} %.")
+        return Message(words, difference=difference_percent, **fields)
+    uncertain = Message("{comparison}: not certain", **fields)
+    if several:
+        uncertain = Message("{comparison}: not certain ({p}, corrected for {pairs} pairs)", **fields)
+    words = template(
         "{uncertain}. About {more} more tests with this scatter, {needed} in each group, would find a difference of "
-        "{difference:.3g} % in four of five cases.",
-        uncertain=uncertain, more=more, needed=row["n_needed"], difference=difference_percent,
-    )  # fmt: skip
+        "{difference:.3g} % in four of five cases."
+    )
+    more = sum(max(needed - n, 0) for n in (row["n_a"], row["n_b"]))
+    if more == 0:
+        words = template(
+            "{uncertain}. The tests suffice to find a difference of {difference:.3g} % in four of five cases."
+        )
+    return Message(words, uncertain=uncertain, more=more, needed=needed, difference=difference_percent)
 
 
 def _p_text(p: float) -> Message:
@@ -177,61 +163,38 @@ def caveats(data: ReportData) -> list[Markup]:
     return [html(sentence) for sentence in (*warnings, *_missing_uncertainties(data), *remarks, *_missing_data(data))]
 
 
-def _missing_uncertainties(data: ReportData) -> list[str]:
+def _missing_uncertainties(data: ReportData) -> Iterator[Message]:
     campaign = data.results["campaign"]
-    sentences: list[str] = []
-    if campaign["gauge_resolution_mm"] is None and (data.penetration or data.shear):
-        sentences.append(
-            Message(
-                "The gauge's resolution is not stated: no interval carries a depth uncertainty, and no experiment "
-                "could be flagged as below the resolution. Where depths are small the intervals are then too narrow."
-            )
+    if campaign["gauge_resolution_mm"] is None and data.has_tests:
+        yield Message(
+            "The gauge's resolution is not stated: no interval carries a depth uncertainty, and no experiment could be "
+            "flagged as below the resolution. Where depths are small the intervals are then too narrow."
         )
-    uncertainties = (
-        (
-            "load_uncertainty_N",
-            Message("The uncertainty of the loads is not stated; it counts as 0."),
-            data.penetration,
-        ),
-        ("moment_uncertainty_Nm", Message("The uncertainty of the moments is not stated; it counts as 0."), data.shear),
-        (
-            "lever_arm_uncertainty_mm",
-            Message("The uncertainty of the lever arms is not stated; it counts as 0."),
-            data.shear,
-        ),
-    )
-    sentences += [sentence for key, sentence, tests in uncertainties if tests and campaign[key] is None]
+    if campaign["load_uncertainty_N"] is None and data.penetration:
+        yield Message("The uncertainty of the loads is not stated; it counts as 0.")
+    if campaign["moment_uncertainty_Nm"] is None and data.shear:
+        yield Message("The uncertainty of the moments is not stated; it counts as 0.")
+    if campaign["lever_arm_uncertainty_mm"] is None and data.shear:
+        yield Message("The uncertainty of the lever arms is not stated; it counts as 0.")
     if data.shear and all(row["S_f_interval_N_per_mm2"] is None for row in data.shear):
-        sentences.append(
-            Message("No uncertainty that bears on a shear test is stated, so S_f has no intervals for single tests.")
-        )
-    return sentences
+        yield Message("No uncertainty that bears on a shear test is stated, so S_f has no intervals for single tests.")
 
 
-def _missing_data(data: ReportData) -> list[str]:
-    sentences: list[str] = []
+def _missing_data(data: ReportData) -> Iterator[Message]:
     if not data.penetration:
-        sentences.append(
-            Message("The campaign has no penetration experiments: there is no H_V and no choice between laws.")
-        )
+        yield Message("The campaign has no penetration experiments: there is no H_V and no choice between laws.")
     if not data.shear:
-        sentences.append(Message("The campaign has no shear experiments: there is no S_f."))
-    densities = np.concatenate((data.pressed.density, data.sheared.density))
-    if not np.isfinite(densities).any():
-        sentences.append(
-            Message("No snow density is given at a used experiment: the regressions on density have no data.")
-        )
+        yield Message("The campaign has no shear experiments: there is no S_f.")
+    if not np.isfinite([*data.pressed.density, *data.sheared.density]).any():
+        yield Message("No snow density is given at a used experiment: the regressions on density have no data.")
     tests = data.campaign.penetration
     if data.campaign.drop_cone is None and (tests is None or not np.isfinite(tests.drop_cone_depth).any()):
-        sentences.append(Message("No drop-cone test is given: the regression of H_V on drop-cone depth has no data."))
+        yield Message("No drop-cone test is given: the regression of H_V on drop-cone depth has no data.")
     if data.results["provenance"]["options"]["geometry"] == "paper":
-        sentences.append(
-            Message(
-                "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its "
-                "base is under the surface (flagged beyond_tool)."
-            )
+        yield Message(
+            "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its base "
+            "is under the surface (flagged beyond_tool)."
         )
-    return sentences
 
 
 def readings_used(data: ReportData) -> Markup:
@@ -265,43 +228,37 @@ def procedure_comparison(data: ReportData) -> Markup:
     )
 
 
-def seating_findings(data: ReportData) -> list[Markup]:
+def seating_findings(data: ReportData) -> Iterator[Markup]:
     """Size of the depth offsets and number of those that differ from zero."""
     rows = data.seating
-    without = int(data.pressed.used.sum()) - len(rows)
     if not rows:
-        return [prose("No used series has the readings that an offset can be estimated from.")]
+        yield prose("No used series has the readings that an offset can be estimated from.")
+        return
     half_widths = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
-    sentences = [
-        prose(
-            "{shown} of {all} used series have an offset whose 95 % interval excludes zero; the median half-width of "
-            "the intervals is {half} mm. {file} lists every offset.",
-            shown=whole(count_resolved_offsets(rows)),
-            all=whole(len(rows)),
-            half=significant(float(np.nanmedian(half_widths))),
-            file=_table_file("seating", data),
-        )
-    ]
-    if without:
-        sentences.append(prose("For {n} used series no offset could be estimated.", n=whole(without)))
-    return sentences
+    yield prose(
+        "{shown} of {all} used series have an offset whose 95 % interval excludes zero; the median half-width of the "
+        "intervals is {half} mm. {file} lists every offset.",
+        shown=whole(count_resolved_offsets(rows)),
+        all=whole(len(rows)),
+        half=significant(float(np.nanmedian(half_widths))),
+        file=_table_file("seating", data),
+    )
+    if without := int(data.pressed.used.sum()) - len(rows):
+        yield prose("For {n} used series no offset could be estimated.", n=whole(without))
 
 
-def unloading_findings(data: ReportData) -> list[Markup]:
+def unloading_finding(data: ReportData) -> Markup:
     """Number of series whose k_u / H_V has an upper end."""
     used = [row for row in data.unloaded if row["used"]]
     if not used:
-        return [prose("No used series was unloaded.")]
-    resolved = [row for row in used if row["unloading_ratio_interval"] is not None]
-    return [
-        prose(
-            "{resolved} of {all} used series with unloading give both ends of k_u / H_V; of the others only the lower "
-            "end is known, the inverse of the upper end of H_V / k_u. {file} lists every series.",
-            resolved=whole(len(resolved)),
-            all=whole(len(used)),
-            file=_table_file("unloading", data),
-        )
-    ]
+        return prose("No used series was unloaded.")
+    return prose(
+        "{resolved} of {all} used series with unloading give both ends of k_u / H_V; of the others only the lower end "
+        "is known, the inverse of the upper end of H_V / k_u. {file} lists every series.",
+        resolved=whole(sum(row["unloading_ratio_interval"] is not None for row in used)),
+        all=whole(len(used)),
+        file=_table_file("unloading", data),
+    )
 
 
 def _table_file(name: str, data: ReportData) -> Markup:

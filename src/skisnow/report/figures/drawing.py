@@ -1,20 +1,20 @@
-"""A figure of a report with its caption, its SVG, PNG, PDF and EPS, and its data as CSV."""
+"""A figure with its caption, and its files: SVG, PNG, PDF, EPS, and its data as CSV."""
 
 from __future__ import annotations
 
 import base64
 import io
 import re
-import warnings
 from collections import Counter
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from string import ascii_lowercase
 from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 from markupsafe import Markup
 from matplotlib import rc_context
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection
 from matplotlib.colors import to_rgba_array
@@ -23,9 +23,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 
+from ..._support.errors import ParameterError
+from ..._support.messages import ENGLISH, Message, in_language
+from ..._support.staging import require_writable, write_file
 from ..formatting import html
 from .figure_data import figure_data
-from .style import thinning_sentence
+from .style import journal_style, local_axes, thinning_sentence
 
 UNDATED: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
@@ -122,16 +125,13 @@ def _render_svg(drawing: Drawing) -> str:
 def _render_as(form: Form, drawing: Drawing) -> bytes:
     content = io.BytesIO()
     options: dict[str, Any] = {"dpi": _EPS_DPI} if form == "eps" else {}
-    with warnings.catch_warnings():
-        # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
-        warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
-        engine = drawing.figure.get_layout_engine()
-        if engine is not None:
-            engine.execute(drawing.figure)
-            # with any engine, even the one called "none", each file would be drawn twice
-            with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
-                drawing.figure.set_layout_engine(None)
-        drawing.figure.savefig(content, format=form, metadata=UNDATED[form], **options)
+    engine = drawing.figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(drawing.figure)
+        # with any engine, even the one called "none", each file would be drawn twice
+        with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+            drawing.figure.set_layout_engine(None)
+    drawing.figure.savefig(content, format=form, metadata=UNDATED[form], **options)
     return content.getvalue()
 
 
@@ -172,40 +172,22 @@ def left_title(axes: Axes) -> Text | None:
 
 
 def make_opaque(figure: Figure) -> None:
-    """Replace transparent colours of a figure by opaque ones, as an EPS has no transparency."""
+    """Replace transparent colours of a figure by opaque ones over white, as an EPS has no transparency."""
     for artist in figure.findobj():
-        _make_opaque(artist)
-
-
-def _make_opaque(artist: Artist) -> None:
-    alpha = artist.get_alpha()
-    if isinstance(artist, Collection):
-        faces, edges = _blend(artist.get_facecolor(), None), _blend(artist.get_edgecolor(), None)
-        if artist.get_array() is None:  # else its colours come from a map
+        colours: dict[str, Any] = {}
+        if isinstance(artist, Collection) and artist.get_array() is None:  # else its colours come from a map
+            colours = {"facecolor": _blend(artist.get_facecolor()), "edgecolor": _blend(artist.get_edgecolor())}
+        elif isinstance(artist, Patch) and artist.get_alpha() is not None:
+            face, edge = _blend([artist.get_facecolor(), artist.get_edgecolor()])
+            colours = {"facecolor": face, "edgecolor": edge}
+        elif isinstance(artist, Line2D | Text) and artist.get_alpha() is not None:
+            colours = {"color": _blend([artist.get_color()], artist.get_alpha())[0]}
+        if colours:
             artist.set_alpha(None)
-            artist.set_facecolor(faces)
-            artist.set_edgecolor(edges)
-    elif alpha is None or np.ndim(alpha) or alpha >= 1.0:
-        return
-    elif isinstance(artist, Line2D):
-        artist.set_color(_blend_one(artist.get_color(), alpha))
-        artist.set_alpha(None)
-    elif isinstance(artist, Patch):
-        face, edge = _blend_one(artist.get_facecolor(), None), _blend_one(artist.get_edgecolor(), None)
-        artist.set_alpha(None)
-        artist.set_facecolor(face)
-        artist.set_edgecolor(edge)
-    elif isinstance(artist, Text):
-        artist.set_color(_blend_one(artist.get_color(), alpha))
-        artist.set_alpha(None)
+            artist.set(**colours)
 
 
-def _blend_one(colour: Any, alpha: float | None) -> tuple[float, float, float, float]:
-    red, green, blue, opacity = _blend([colour], alpha)[0].tolist()
-    return red, green, blue, opacity
-
-
-def _blend(colours: Any, alpha: float | None) -> Any:
+def _blend(colours: Any, alpha: float | None = None) -> Any:
     """Colours blended over white, shape (n, 4); fully transparent ones stay transparent."""
     rgba = to_rgba_array(colours, alpha)
     opacity = rgba[:, 3:]
@@ -251,3 +233,79 @@ def _share_styles(svg: str) -> str:
     rules = "".join(f".{name}{{{style}}}" for style, name in classes.items())
     svg = _STYLE.sub(lambda match: f' class="{classes[match[1]]}"' if match[1] in classes else match[0], svg)
     return svg.replace("</svg>", f"<style>{rules}</style></svg>")
+
+
+Progress: TypeAlias = Callable[[str], None]  # callback for progress messages
+
+
+def silent(_message: str) -> None:
+    """Progress callback that ignores the message."""
+
+
+def picture_files(names: Iterable[str]) -> list[str]:
+    """Paths of all files of these figures in a report's folder."""
+    return [f"figures/{name}.{ending}" for name in names for ending in FORMS]
+
+
+def write_pictures(drawings: Iterable[Drawing], folder: Path, *, progress: Progress = silent) -> list[Picture]:
+    """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
+
+    Raises OutputError: a file cannot be written.
+    """
+    pictures = render_pictures(drawings, progress=progress)
+    for picture in pictures:
+        for ending, content in picture.files.items():
+            write_file(folder / f"{picture.name}.{ending}", content)
+    return pictures
+
+
+def render_pictures(drawings: Iterable[Drawing], *, progress: Progress = silent) -> list[Picture]:
+    """Render drawings in the house style and the current language; ``progress`` gets the name of each figure.
+
+    drawings: an iterator that draws each figure when it is requested: a figure takes its style when it is created.
+    """
+    pictures = []
+    with journal_style():
+        for drawing in drawings:
+            progress(Message("figure {name}", name=drawing.name))
+            local_axes(drawing.figure)
+            pictures.append(render(drawing))
+    return pictures
+
+
+PNG_WIDTH: Final = 1200  # width of a PNG in pixels
+SUFFIXES: Final = (".png", ".svg", ".pdf", ".csv")
+
+
+def require_drawable(path: Path) -> None:
+    """Reject the path of a figure before long computations.
+
+    Raises ParameterError: the suffix is not one of a figure.
+    Raises OutputError: the folder cannot be created or written.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise ParameterError("{path}: a figure is a file that ends in {suffixes}. Change its ending").tag(
+            "unknown_ending", path=path, suffixes=list(SUFFIXES)
+        )
+    require_writable(path.parent)
+
+
+def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH) -> None:
+    """Draw in the house style and write a complete file; the same bytes for the same data.
+
+    path: Path with the suffix .png (1200 pixels wide), .svg or .pdf, or .csv for the data of the figure.
+    draw: function that draws the figure; it is called inside the house style.
+    language: language of the figure (en, de).
+    """
+    require_drawable(path)
+    kind = path.suffix.lower().removeprefix(".")
+    with journal_style(), in_language(language):
+        figure = draw()
+        local_axes(figure)
+        if kind == "csv":
+            write_file(path, figure_data(figure))
+            return
+        content = io.BytesIO()
+        options: dict[str, Any] = {"dpi": PNG_WIDTH / figure.get_figwidth()} if kind == "png" else {}
+        figure.savefig(content, format=kind, metadata=UNDATED[kind], **options)
+    write_file(path, content.getvalue())

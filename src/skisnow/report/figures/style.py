@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -83,7 +84,9 @@ _RC: Final[dict[str, Any]] = {
 @contextmanager
 def journal_style() -> Iterator[None]:
     """Matplotlib's defaults with the style of the figures inside the block, independent of the user's settings."""
-    with matplotlib.rc_context():
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
+        warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(cast("Any", _RC))
         yield
@@ -143,15 +146,11 @@ def scatter(
     x, y, site = x[part], y[part], site[part]
     handles = []
     for style, mask in masks(styles, site):
-        axes.plot(
-            x[mask],
-            y[mask],
-            linestyle="none",
-            rasterized=many,
-            zorder=3,
-            **_marker(style, size or (2.5 if many else None)),
-        )
-        handles.append(Line2D([], [], linestyle="none", label=style.label, **_marker(style, None)))
+        look: dict[str, Any] = {"linestyle": "none", "marker": style.marker, "color": style.colour}
+        look["markerfacecolor"] = "none"
+        handles.append(Line2D([], [], label=style.label, **look))
+        look["markersize"] = size or (2.5 if many else handles[-1].get_markersize())
+        axes.plot(x[mask], y[mask], rasterized=many, zorder=3, **look)
     return handles
 
 
@@ -170,11 +169,6 @@ def thinning_sentence(count: int) -> str:
     """Sentence of the caption about a thinned cloud; empty if all points are drawn."""
     step = thinned(count).step
     return Message(" One point in {step} is drawn.", step=step) if step > 1 else ""
-
-
-def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
-    line_style: dict[str, Any] = {"marker": style.marker, "color": style.colour, "markerfacecolor": "none"}
-    return line_style if size is None else line_style | {"markersize": size}
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
@@ -212,12 +206,8 @@ def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
     """Set a logarithmic axis around the positive values, with plain numbers; below two decades also at 2 and 5."""
     positive = values[np.isfinite(values) & (values > 0)]
     low, high = float(positive.min()) / 1.3, float(positive.max()) * 1.3
-    if which == "x":
-        axes.set_xscale("log")
-        axes.set_xlim(low, high)
-    else:
-        axes.set_yscale("log")
-        axes.set_ylim(low, high)
+    axes.set(**{f"{which}scale": "log"})
+    axes.set(**{f"{which}lim": (low, high)})
     axis = axes.xaxis if which == "x" else axes.yaxis
     if high < 200.0 * low:
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -289,8 +279,7 @@ class SitePlot:
 
     def start_at_zero(self, which: str, values: FloatArray, margin: float) -> None:
         """Limits from 0 to a margin above the maximum."""
-        set_limits = self.axes.set_xlim if which == "x" else self.axes.set_ylim
-        set_limits(0.0, float(values.max()) * margin or 1.0)
+        self.axes.set(**{f"{which}lim": (0.0, float(values.max()) * margin or 1.0)})
 
     def finish(self) -> Figure:
         """The figure with its legend, marked if the data are synthetic."""

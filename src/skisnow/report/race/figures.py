@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,9 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ..._support.arrays import FloatArray
 from ..._support.messages import Message, joined
-from ...racing import QuickestLine, RacingLine, Worth
+from ...racing import QuickestLine, Worth
 from ...track.course.gates_table import GateGap
 from ..figures.drawing import Drawing
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMILLION, legend_below, new_figure
@@ -36,7 +36,8 @@ def _draw_lines(axes: Axes, result: QuickestLine) -> None:
         (result.start, GREY, Message("where the search began")),
         (result.line, BLUE, Message("quickest line")),
     ):
-        x, y = _points_of_line(line)
+        x = np.arange(line.start[0], line.apexes[-1][0] + 2.0, 0.1)
+        y = [line.at(float(distance))[0] for distance in x]
         axes.plot(x, y, color=colour, linewidth=1.6, label=label)
         apex = np.array(line.apexes[1:])
         axes.plot(*apex.T, linestyle="none", marker="|", color=colour, markersize=7.0)
@@ -45,11 +46,6 @@ def _draw_lines(axes: Axes, result: QuickestLine) -> None:
     axes.set_xlabel(Message("down the slope $x$ (m)"))
     axes.set_ylabel(Message("to the left $y$ (m)"))
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=3))
-
-
-def _points_of_line(line: RacingLine) -> tuple[FloatArray, FloatArray]:
-    x = np.arange(line.start[0], line.apexes[-1][0] + 2.0, 0.1)
-    return x, np.array([line.at(float(distance))[0] for distance in x])
 
 
 def _draw_history(axes: Axes, result: QuickestLine) -> None:
@@ -76,29 +72,22 @@ def race_worth(variants: Sequence[Worth]) -> Figure:
     """Draw one row for each variant: its time less that of the unchanged scenario."""
     figure = new_figure(width_mm=1.5 * SINGLE_MM, height_mm=_FRAME_MM + _ROW_MM * len(variants))
     axes = figure.add_subplot()
+    scenario_mark: dict[str, Any] = {"color": BLACK, "marker": "D", "markersize": 4.5, "linestyle": "none"}
+    snow_mark: dict[str, Any] = {"color": BLUE, "marker": "|", "markersize": 9.0, "linestyle": "none"}
     for row, variant in enumerate(variants):
         values = variant.differences
-        axes.plot(values, np.full(len(values), row), "|", color=BLUE, markersize=9.0)
+        axes.plot(values, np.full(len(values), row), **snow_mark)
         if not len(values):
             axes.text(0.0, row, f"{Message('not through all gates')} ", ha="right", va="center", fontsize=7.0)
         if variant.on_own_snow is not None:
-            axes.plot(variant.on_own_snow, row, "D", color=BLACK, markersize=4.5)
+            axes.plot(variant.on_own_snow, row, **scenario_mark)
     axes.axvline(0.0, color=GREY, linewidth=0.7)
     axes.set_yticks(range(len(variants)), [variant.name for variant in variants])
     axes.set_ylim(len(variants) - 0.4, -0.6)
     axes.set_xlabel(Message("time more than as it is (s)"))
-    legend_below(
-        figure,
-        [
-            _handle(BLACK, "D", 4.5, Message("on the snow of the scenario")),
-            _handle(BLUE, "|", 9.0, Message("on each snow")),
-        ],
-    )
+    own = Line2D([], [], label=Message("on the snow of the scenario"), **scenario_mark)
+    legend_below(figure, [own, Line2D([], [], label=Message("on each snow"), **snow_mark)])
     return figure
-
-
-def _handle(colour: str, marker: str, size: float, label: str) -> Line2D:
-    return Line2D([], [], color=colour, marker=marker, markersize=size, linestyle="none", label=label)
 
 
 MOST_NAMES = 26  # maximum number of gate names on the axis; of more gates, every k-th has its name
@@ -108,14 +97,13 @@ def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Dr
     """Figure with its caption if both crossed a gate; ``names`` of the run and of the run that it is compared with."""
     if all(gap.gap_s is None for gap in gaps):
         return
-    alt = Message(
-        "Gap in time at each gate and time lost between gates, {own} against {other}.", own=names[0], other=names[1]
-    )
+    fields = {"own": names[0], "other": names[1]}
+    alt = Message("Gap in time at each gate and time lost between gates, {own} against {other}.", **fields)
     caption = prose(
         "(a) Gap of {own} to {other} at each gate, both from their starts. (b) Time lost since the gate before "
         "that both crossed. Above 0 {own} is behind or loses.",
-        own=names[0], other=names[1],
-    )  # fmt: skip
+        **fields,
+    )
     alt = joined([alt, last_words(gaps, names)])
     yield Drawing("gate_gaps", caption, alt, gate_gaps_figure(gaps, names), wide=True)
 

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from markupsafe import Markup
 
-from ..._support.messages import Message, local_number, outcome_words
+from ..._support.messages import Message, local_number, outcome_words, template
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
 from ...racing import QuickestLine, Score, Worth, write_line
 from ...simulation.run import Run
 from ...track.course.gates_table import GateGap, gaps_csv
 from ..figures.course import run_course
-from ..figures.drawing import FORMS, Picture
-from ..figures.figure_files import write_figure, write_pictures
+from ..figures.drawing import FORMS, Picture, write_figure, write_pictures
 from ..formatting import aligned_rows, html, json_text, prose
 from ..sheet import Section
-from ..table import Column, Table
+from ..table import Column, Table, record_table
 from .figures import gap_drawings, gate_gaps_figure, last_words, race_lines, race_worth
 
 SUMMARY = "race.json"
@@ -56,21 +56,15 @@ def write_race(
             write_figure(out / "worth.png", lambda: race_worth(worth))
         if run is not None and len(run.time) > 1:
             write_figure(out / "course.png", lambda: run_course(run))
-        gates = [gate.name for gate in result.line.course.gates]
-        for variant in worth:
+        for variant in worth:  # the time lost gate by gate to the scenario's own ski
             if variant.name in against and variant.scores[0].gates and variant.base[0].gates:
-                _write_gaps(variant, gates, out, result.scenario.ski.name)
+                names = Path(variant.name).stem, result.scenario.ski.name
+                gaps = variant.gaps([gate.name for gate in result.line.course.gates])
+                write_file(out / f"gaps_{names[0]}.csv", gaps_csv(gaps))
+                if _crossed_by_both(gaps):
+                    write_figure(out / f"gaps_{names[0]}.png", partial(gate_gaps_figure, gaps, names))
         write_file(out / SUMMARY, f"{json_text(race_dict(result, checked, worth))}\n")
     return folder / SUMMARY
-
-
-def _write_gaps(worth: Worth, gates: Sequence[str], folder: Path, own: str) -> None:
-    """Write the time lost gate by gate to the scenario's own ski; the files have the name of the variant."""
-    name = Path(worth.name).stem
-    gaps = worth.gaps(gates)
-    write_file(folder / f"gaps_{name}.csv", gaps_csv(gaps))
-    if any(gap.gap_s is not None for gap in gaps):
-        write_figure(folder / f"gaps_{name}.png", lambda: gate_gaps_figure(gaps, (name, own)))
 
 
 GAPS_CSV: Final = "gate_gaps.csv"
@@ -81,8 +75,7 @@ _TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
 def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     """Table for a terminal with a line for each gate: both times, the gap, the time lost since the gate before."""
     rows: list[tuple[str, ...]] = [("gate", Message("time (s)"), "other (s)", "gap (s)", "lost (s)")]
-    for row in (gap._asdict() for gap in gaps):
-        rows.append((str(row["gate"]), *(_hundredths(row[name], signed=name in _TIMES[2:]) or "-" for name in _TIMES)))
+    rows += [(gap.gate, *(text or "-" for text in _time_texts(gap).values())) for gap in gaps]
     heading = Message("Gates of {name} against {name_2}, behind +", name=names[0], name_2=names[1])
     return "\n".join([heading, *aligned_rows(rows), _result_sentence(gaps, names)])
 
@@ -111,22 +104,14 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
         Column(name, words, "text", unit="s" if name in _TIMES else "")
         for name, words in zip(GateGap._fields, headings, strict=True)
     ]
-    rows = [
-        tuple(_gap_cell(name, row[name]) for name in GateGap._fields)
-        for row in (gap._asdict() for gap in gaps)
-    ]  # fmt: skip
+    records = [
+        {"gate": gap.gate, "outcome": outcome_words(gap.outcome), "other_outcome": outcome_words(gap.other_outcome)}
+        | {name: text and local_number(text) for name, text in _time_texts(gap).items()}
+        for gap in gaps
+    ]
     note = Message("Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses.")
     caption = Message("Gates of {run} against {other}.", run=names[0], other=names[1])
-    return Table("gate_gaps", caption, tuple(columns), rows, note=note)
-
-
-def _gap_cell(name: str, value: Any) -> str | None:
-    if name == "gate":
-        return str(value)
-    if name not in _TIMES:
-        return outcome_words(value)
-    text = _hundredths(value, signed=name in _TIMES[2:])
-    return None if text is None else local_number(text)
+    return record_table("gate_gaps", caption, tuple(columns), records, note=note)
 
 
 def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
@@ -136,10 +121,10 @@ def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
         return Markup("")
     gap = crossed[-1].gap_s or 0.0
     value = Markup("<strong>{} s</strong>").format(local_number(f"{abs(gap):.2f}"))
-    fields = {"value": value, "gate": crossed[-1].gate, "number": len(crossed), "all": len(gaps)}
+    sentence = template("{value} ahead at gate {gate}; {number} of {all} gates were crossed by both.")
     if gap > 0.0:
-        return prose("{value} behind at gate {gate}; {number} of {all} gates were crossed by both.", **fields)
-    return prose("{value} ahead at gate {gate}; {number} of {all} gates were crossed by both.", **fields)
+        sentence = template("{value} behind at gate {gate}; {number} of {all} gates were crossed by both.")
+    return prose(sentence, value=value, gate=crossed[-1].gate, number=len(crossed), all=len(gaps))
 
 
 def _result_sentence(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Message:
@@ -150,10 +135,10 @@ def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:
     return [gap for gap in gaps if gap.gap_s is not None]
 
 
-def _hundredths(value: float | None, *, signed: bool = False) -> str | None:
-    if value is None:
-        return None
-    return f"{value:+.2f}" if signed else f"{value:.2f}"
+def _time_texts(gap: GateGap) -> dict[str, str | None]:
+    """Times of a gate to a hundredth of a second, gap and lost with their sign; None without one."""
+    times, signs = gap._asdict(), {"gap_s": "+", "lost_s": "+"}
+    return {name: None if times[name] is None else f"{times[name]:{signs.get(name, '')}.2f}" for name in _TIMES}
 
 
 def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> str:

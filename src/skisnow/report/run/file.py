@@ -123,7 +123,12 @@ def run_dataset(run: Run) -> Dataset:
     xarray = import_extra("xarray", extra="xarray", what=Message("A run as a Dataset"))
     stored = variables_of(run)
     coordinates = {variable.name for variable in stored if (variable.name,) == variable.dimensions}
-    variables = {variable.name: _data_variable(variable, run) for variable in stored}
+    variables = {}
+    for variable in stored:
+        values = np.asarray(variable.values(run), dtype=float)
+        finite = np.where(np.isfinite(values), values, np.nan)  # as in run.nc: the radius of a straight path is missing
+        attributes = {"units": variable.units, "long_name": variable.meaning}
+        variables[variable.name] = variable.dimensions, finite, attributes
     return xarray.Dataset(
         {name: value for name, value in variables.items() if name not in coordinates},
         {name: variables[name] for name in coordinates} | {SKI: list(SKI_NAMES)},
@@ -134,12 +139,6 @@ def run_dataset(run: Run) -> Dataset:
             "scenario": json.dumps(in_sections(scenario_values(run.scenario)), ensure_ascii=False),
         },
     )
-
-
-def _data_variable(variable: RunVariable, run: Run) -> tuple[tuple[str, ...], Any, dict[str, str]]:
-    values = np.asarray(variable.values(run), dtype=float)
-    finite = np.where(np.isfinite(values), values, np.nan)  # as in run.nc: the radius of a straight path is missing
-    return variable.dimensions, finite, {"units": variable.units, "long_name": variable.meaning}
 
 
 TIME, SKI, STATION, PIECE = "time", "ski", "station", "piece"
@@ -195,119 +194,93 @@ def _vector(
     ]
 
 
-def _coordinates() -> list[RunVariable]:
-    place = (
-        "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a profile), y left, z up"
-    )
+def _scalars(
+    stem: str, dimensions: tuple[str, ...], source: str, rows: Sequence[tuple[str, str, str]], coordinates: str = ""
+) -> list[RunVariable]:
+    """Variables of several numbers of one part of a run: name, unit and meaning of each."""
     return [
-        RunVariable("time", (TIME,), "s", "time since the start", "time", axis="T"),
-        RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
-                    "skis.station"),
-        *(replace(part, axis=part.name.upper()) for part in _vector("{}", (TIME,), "m", place, "place")),
-        *_vector("ski_{}", _AT_BOOT, "m", "loaded edge under the boot, on the snow surface: {}", "skis.track"),
-        *_vector("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
-                 "groove.middle"),
-    ]  # fmt: skip
+        RunVariable(stem.format(name), dimensions, units, meaning, f"{source}.{name}", coordinates=coordinates)
+        for name, units, meaning in rows
+    ]
 
 
-def _motion() -> list[RunVariable]:
-    return [
-        *_vector("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}", "velocity",
-                 coordinates=_PATH),
-        RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", "speed", coordinates=_PATH),
-        RunVariable("heading", (TIME,), "rad", "heading of the skis from the fall line, positive to the left",
-                    "heading", coordinates=_PATH),
-        RunVariable("turn_radius", (TIME,), "m",
-                    "path's turn radius, positive to the left; missing where the path is straight", "turn_radius",
-                    coordinates=_PATH),
-        RunVariable("attitude", (TIME, "space_axis", "sledge_axis"), "1",
-                    "rotation matrix from the sledge's axes (forward, left, up) to those of space (x, y, z)",
-                    "attitude"),
-    ]  # fmt: skip
+_ENERGIES: Final = {
+    "kinetic": "kinetic energy",
+    "potential": "potential energy in the field of gravity",
+    "elastic_ski": "elastic energy of both skis",
+    "elastic_snow": "elastic energy of the snow: of pressure, of the shear at the edges, of friction that sticks",
+    "delayed_snow": "energy stored in the delayed depth of the snow under the skis",
+    "penetration": "work lost to the grooves in the snow since the start",
+    "shear": "work lost to side-slip of the skis since the start",
+    "friction": "work lost to glide friction since the start",
+    "drag": "work lost to air drag since the start",
+    "damping": "work lost to damping of the skis since the start",
+    "snow_damping": "work lost to damping and delayed depth of the snow since the start",
+    "boots": "work given since the start by what moves the boots",
+    "push": "work given since the start by a push on the body",
+}
+_OWN: Final = ("ahead", "left", "up")
 
-
-def _skis() -> list[RunVariable]:
-    along = (
+RUN_VARIABLES: Final = (
+    RunVariable("time", (TIME,), "s", "time since the start", "time", axis="T"),
+    RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
+                "skis.station"),
+    *(replace(part, axis=part.name.upper()) for part in _vector(
+        "{}", (TIME,), "m", "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a "
+        "profile), y left, z up", "place")),
+    *_vector("ski_{}", _AT_BOOT, "m", "loaded edge under the boot, on the snow surface: {}", "skis.track"),
+    *_vector("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
+             "groove.middle"),
+    *_vector("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}", "velocity",
+             coordinates=_PATH),
+    RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", "speed", coordinates=_PATH),
+    RunVariable("heading", (TIME,), "rad", "heading of the skis from the fall line, positive to the left",
+                "heading", coordinates=_PATH),
+    RunVariable("turn_radius", (TIME,), "m",
+                "path's turn radius, positive to the left; missing where the path is straight", "turn_radius",
+                coordinates=_PATH),
+    RunVariable("attitude", (TIME, "space_axis", "sledge_axis"), "1",
+                "rotation matrix from the sledge's axes (forward, left, up) to those of space (x, y, z)",
+                "attitude"),
+    RunVariable("depth", _AT_BOOT, "m",
+                "depth of the loaded edge under the boot below the undisturbed surface; negative: above it",
+                "skis.depth", coordinates=_EDGE),
+    *_scalars("{}", _ALONG_SKI, "skis", (
         ("edge_depth", "m", "depth of the edge that is down below the undisturbed surface; negative: above it"),
         ("force_per_length", "N m-1", "normal force of the snow on the ski per length"),
         ("shear_per_length", "N m-1", "force of the snow on the ski across its edge, per length, positive to the left"),
         ("bending", "m", "deflection of the base away from the snow, against the boot"),
         ("twist", "rad", "growth of the edge angle against that at the boot"),
-    )
-    total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
-    return [
-        RunVariable("depth", _AT_BOOT, "m",
-                    "depth of the loaded edge under the boot below the undisturbed surface; negative: above it",
-                    "skis.depth", coordinates=_EDGE),
-        *(RunVariable(name, _ALONG_SKI, units, meaning, f"skis.{name}", coordinates=_EDGE)
-          for name, units, meaning in along),
-        *_vector("snow_force_{}", _AT_BOOT, "N", total, "skis.force"),
-        RunVariable("total_force", _AT_BOOT, "N", "magnitude of the total force of the snow on the ski",
-                    "skis.total_force"),
-        RunVariable("normal_force", _AT_BOOT, "N", "its part along the snow's normal", "skis.normal_force"),
-    ]  # fmt: skip
-
-
-def _boots() -> list[RunVariable]:
-    place = "middle of the boot's sole at the level of the base: {}"
-    variables = _vector("boot_{}", _AT_BOOT, "m", place, "boots.place")
-    angles = {
-        "edge_angle": "edge angle, positive: left edge down",
-        "pitch": "pitch, positive: tip up",
-        "heading": "heading, positive to the left",
-    }
-    for i, (name, meaning) in enumerate(angles.items()):
-        variables.append(RunVariable(f"boot_{name}", _AT_BOOT, "rad", f"of the boot: {meaning}", "boots.angles", i))
-    for what, unit in (("force", "N"), ("moment", "N m")):
-        stem, meaning = f"boot_{what}_{{}}", f"{what} of the ski on its boot, in"
-        own = ("ahead", "left", "up")
-        variables += _vector(stem, _AT_BOOT, unit, f"{meaning} space: {{}}", f"boots.{what}")
-        variables += _vector(stem, _AT_BOOT, unit, f"{meaning} the boot's axes: {{}}", f"boots.own_{what}", names=own)
-    return variables
-
-
-def _energies() -> list[RunVariable]:
-    meanings = {
-        "kinetic": "kinetic energy",
-        "potential": "potential energy in the field of gravity",
-        "elastic_ski": "elastic energy of both skis",
-        "elastic_snow": "elastic energy of the snow: of pressure, of the shear at the edges, of friction that sticks",
-        "delayed_snow": "energy stored in the delayed depth of the snow under the skis",
-        "penetration": "work lost to the grooves in the snow since the start",
-        "shear": "work lost to side-slip of the skis since the start",
-        "friction": "work lost to glide friction since the start",
-        "drag": "work lost to air drag since the start",
-        "damping": "work lost to damping of the skis since the start",
-        "snow_damping": "work lost to damping and delayed depth of the snow since the start",
-        "boots": "work given since the start by what moves the boots",
-        "push": "work given since the start by a push on the body",
-    }
-    stems = dict.fromkeys(STORED, "{}_energy") | dict.fromkeys(LOST, "lost_{}") | dict.fromkeys(GIVEN, "given_{}")
-    return [
-        RunVariable(stem.format(name), (TIME,), "J", meanings[name], f"energies.{name}") for name, stem in stems.items()
-    ]
-
-
-def _groove() -> list[RunVariable]:
-    sizes = {
-        "width": "width of the piece, across the path",
-        "depth": "deepest that the snow was pushed",
-        "residual_depth": "permanent (residual) groove depth",
-    }
-    left = "unit vector along the piece, to the left: {}"
-    return [
-        *_vector("groove_left_{}", (PIECE,), "1", left, "groove.left", coordinates=_GROOVE),
-        *(RunVariable(f"groove_{name}", (PIECE,), "m", meaning, f"groove.{name}", coordinates=_GROOVE)
-          for name, meaning in sizes.items()),
-    ]  # fmt: skip
-
-
-RUN_VARIABLES: Final = (*_coordinates(), *_motion(), *_skis(), *_boots(), *_energies(), *_groove())
+    ), coordinates=_EDGE),
+    *_vector("snow_force_{}", _AT_BOOT, "N",
+             "total force of the snow on the ski, in space (normal force, shear and friction): {}", "skis.force"),
+    RunVariable("total_force", _AT_BOOT, "N", "magnitude of the total force of the snow on the ski",
+                "skis.total_force"),
+    RunVariable("normal_force", _AT_BOOT, "N", "its part along the snow's normal", "skis.normal_force"),
+    *_vector("boot_{}", _AT_BOOT, "m", "middle of the boot's sole at the level of the base: {}", "boots.place"),
+    RunVariable("boot_edge_angle", _AT_BOOT, "rad", "of the boot: edge angle, positive: left edge down",
+                "boots.angles", 0),
+    RunVariable("boot_pitch", _AT_BOOT, "rad", "of the boot: pitch, positive: tip up", "boots.angles", 1),
+    RunVariable("boot_heading", _AT_BOOT, "rad", "of the boot: heading, positive to the left", "boots.angles", 2),
+    *_vector("boot_force_{}", _AT_BOOT, "N", "force of the ski on its boot, in space: {}", "boots.force"),
+    *_vector("boot_force_{}", _AT_BOOT, "N", "force of the ski on its boot, in the boot's axes: {}",
+             "boots.own_force", names=_OWN),
+    *_vector("boot_moment_{}", _AT_BOOT, "N m", "moment of the ski on its boot, in space: {}", "boots.moment"),
+    *_vector("boot_moment_{}", _AT_BOOT, "N m", "moment of the ski on its boot, in the boot's axes: {}",
+             "boots.own_moment", names=_OWN),
+    *(RunVariable(stem.format(name), (TIME,), "J", _ENERGIES[name], f"energies.{name}")
+      for stem, names in (("{}_energy", STORED), ("lost_{}", LOST), ("given_{}", GIVEN)) for name in names),
+    *_vector("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}", "groove.left",
+             coordinates=_GROOVE),
+    *_scalars("groove_{}", (PIECE,), "groove", (
+        ("width", "m", "width of the piece, across the path"),
+        ("depth", "m", "deepest that the snow was pushed"),
+        ("residual_depth", "m", "permanent (residual) groove depth"),
+    ), coordinates=_GROOVE),
+)  # fmt: skip
 """Variables of run.nc except the names of the skis, in the order of the file."""
-
-
-def _balance() -> list[RunVariable]:
-    named = (
+SKIER_VARIABLES: Final = (
+    *_scalars("{}", (TIME,), "balance", (
         ("lean", "rad", "lean of the line from the boots' middle to the centre of mass, positive to the left"),
         ("pressure_lean", "rad",
          "lean of the line from the centre of pressure to the centre of mass, positive to the left"),
@@ -317,15 +290,11 @@ def _balance() -> list[RunVariable]:
         ("angulation", "rad", "mean edge angle of the boots less the lean"),
         ("leg", "m", "length from the boots' middle to the centre of mass"),
         ("pressure", "m", "centre of pressure from the boots' middle, to the left"),
-    )  # fmt: skip
-    return [
-        *(RunVariable(name, (TIME,), units, meaning, f"balance.{name}") for name, units, meaning in named),
-        RunVariable("load", _AT_BOOT, "N", "force of the ski on its boot along the snow's normal", "balance.load"),
-        *_vector("centre_{}", (TIME,), "m", "centre of mass of the body: {}", "boots.centre_of_mass"),
-    ]
-
-
-SKIER_VARIABLES: Final = tuple(_balance())  # further variables of a run with a skier
+    )),
+    RunVariable("load", _AT_BOOT, "N", "force of the ski on its boot along the snow's normal", "balance.load"),
+    *_vector("centre_{}", (TIME,), "m", "centre of mass of the body: {}", "boots.centre_of_mass"),
+)  # fmt: skip
+"""Further variables of a run with a skier."""
 
 
 def variables_of(run: Run) -> tuple[RunVariable, ...]:

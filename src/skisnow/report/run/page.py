@@ -22,8 +22,7 @@ from ...simulation.run_summary import run_gates, run_warnings, summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv, time_warnings
 from ..figures.course import edge_angles_of_skis
-from ..figures.drawing import Picture
-from ..figures.figure_files import Progress, picture_files, silent, write_pictures
+from ..figures.drawing import Picture, Progress, picture_files, silent, write_pictures
 from ..formatting import counted, html, json_text, prose, significant, whole
 from ..sheet import Header, Section, sheet
 from .drawings import run_drawings
@@ -35,57 +34,38 @@ FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 FURTHER: Final = ("course", "balance", "boots")
 """Names of the further figures of a run with a course, a skier, or moving boots."""
-_OF_SKIER: Final = {"balance": Message("Balance of the skier"), "boots": Message("Boots")}
 REPLAY: Final = "replay.html"  # name of the file with the replay
-
-
-def _replay_link() -> Markup:
-    return Markup('<a href="{}">{}</a>').format(REPLAY, str(Message("the run in three dimensions")))
 
 
 def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, has_replay: bool = False) -> str:
     """HTML of a run's report in the current language, with a link to the replay if there is one."""
-    by_name = {picture.name: [picture] for picture in pictures}
+
+    def drawn(*names: str) -> list[Picture]:
+        return [picture for name in names for picture in pictures if picture.name == name]
+
+    no_step = [] if pictures else [prose("The run ended before its first step; no figure can be drawn.")]
+    gates, verification = run_gates(run), summary.get("verification")
+    words = [] if gates is None else [prose("{text}.", text=text) for text in time_warnings(gates)]
+    course, skis = [] if gates is None else [gates_table(gates)], [skis_table(run)]
     sections = [
-        Section("outcome", Message("Outcome"), key=outcome_sentences(run), pictures=by_name.get("track", ())),
-        *_course_section(run, by_name),
-        Section("motion", Message("Speed, heading, turn radius"), pictures=by_name.get("motion", ())),
-        *(Section(name, title, pictures=by_name[name]) for name, title in _OF_SKIER.items() if name in by_name),
-        Section(
-            "along-skis",
-            Message("Along the skis"),
-            pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
-            tables=[skis_table(run)],
-        ),
-        Section(
-            "energies",
-            Message("Energies"),
-            pictures=by_name.get("energies", ()),
-            tables=[energies_table(dict(summary))],
-        ),
+        Section("gates", Message("Gates"), words=words, pictures=drawn("course"), tables=course),
+        Section("motion", Message("Speed, heading, turn radius"), pictures=drawn("motion")),
+        Section("balance", Message("Balance of the skier"), pictures=drawn("balance")),
+        Section("boots", Message("Boots"), pictures=drawn("boots")),
+        Section("along-skis", Message("Along the skis"), pictures=drawn("along_ski", "grip"), tables=skis),
+        Section("energies", Message("Energies"), pictures=drawn("energies"), tables=[energies_table(dict(summary))]),
     ]
-    if not pictures:
-        no_step = prose("The run ended before its first step; no figure can be drawn.")
-        sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[no_step])]
-    if summary.get("verification"):
-        sections.append(
-            Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
-        )
-    sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
-    sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
-    return sheet(_make_header(run, has_replay=has_replay), sections)
-
-
-def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
-    result = run_gates(run)
-    if result is None:
-        return []
-    words = [prose("{text}.", text=text) for text in time_warnings(result)]
-    return [
-        Section(
-            "gates", Message("Gates"), words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)]
-        )
-    ]
+    again = [verification_table(verification)] if verification else []
+    return sheet(
+        _make_header(run, has_replay=has_replay),
+        [
+            Section("outcome", Message("Outcome"), outcome_sentences(run), no_step, drawn("track")),
+            *(sections if pictures else []),
+            Section("verification", Message("Computed again"), tables=again),
+            Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]),
+            Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)),
+        ],
+    )
 
 
 def _make_header(run: Run, *, has_replay: bool) -> Header:
@@ -103,13 +83,13 @@ def _make_header(run: Run, *, has_replay: bool) -> Header:
           for name, law in run.given_laws.items() if law),
         (Message("Skis"), f"{scenario.ski.name}, {_edge_in_words(run)}"),
         (Message("Computed"), f"skisnow {version('skisnow')}"),
-        *([(Message("Replay"), _replay_link())] if has_replay else []),
     ]  # fmt: skip
-    kind = (
-        Message("A simulated run of a sledge on two flexible skis")
-        if scenario.skier is None
-        else Message("A simulated run of a skier on two flexible skis")
-    )
+    if has_replay:
+        link = Markup('<a href="{}">{}</a>').format(REPLAY, str(Message("the run in three dimensions")))
+        facts.append((Message("Replay"), link))
+    kind = Message("A simulated run of a skier on two flexible skis")
+    if scenario.skier is None:
+        kind = Message("A simulated run of a sledge on two flexible skis")
     length, time, outcome = _number(run.run_length), _number(run.simulated_s), outcome_words(run.outcome)
     title = Message("{length} m in {time} s: {outcome}", length=length, time=time, outcome=outcome)
     return Header(kind, title, facts, headline=_headline(run))
@@ -135,28 +115,18 @@ def _headline(run: Run) -> Markup:
             value=Markup("<strong>{} s</strong>").format(local_number(f"{times[-1] - times[0]:.2f}")),
             passed=result.passed, all=len(result.times),
         )  # fmt: skip
-    radii = [run.turn_radius_quantile(share) for share in (0.05, 0.5, 0.95)]
-    if all(radius is not None and np.isfinite(radius) for radius in radii):
-        return _median_and_range(
-            template("Turn radius {value} (median; nine tenths of the time from {low} to {high})."),
-            "m",
-            [float(radius) for radius in radii if radius is not None],
-        )
-    speed = run.speed[np.isfinite(run.speed)]
-    if not speed.size:
-        return Markup("")
-    return _median_and_range(
-        template("Speed {value} (median; nine tenths of the time from {low} to {high})."),
-        "m/s",
-        np.quantile(speed, [0.05, 0.5, 0.95]).tolist(),
-    )
-
-
-def _median_and_range(sentence: str, unit: str, quantiles: Sequence[float]) -> Markup:
+    shares = (0.05, 0.5, 0.95)
+    sentence = template("Turn radius {value} (median; nine tenths of the time from {low} to {high}).")
+    quantiles, unit = [run.turn_radius_quantile(share) for share in shares], "m"
+    if not all(radius is not None and np.isfinite(radius) for radius in quantiles):
+        sentence = template("Speed {value} (median; nine tenths of the time from {low} to {high}).")
+        speed, unit = run.speed[np.isfinite(run.speed)], "m/s"
+        if not speed.size:
+            return Markup("")
+        quantiles = np.quantile(speed, shares).tolist()
     low, middle, high = map(significant, quantiles)
-    return prose(
-        sentence, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
-    )  # fmt: skip
+    value = Markup("<strong>{} {}</strong>").format(middle, unit)
+    return prose(sentence, value=value, low=low, high=f"{high}\u00a0{unit}")
 
 
 def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:
@@ -171,8 +141,9 @@ def _value(value: float | None, over_place: Grid | None, size: float, unit: str)
 
 def outcome_sentences(run: Run) -> list[Markup]:
     """Sentences with the outcome, its remedy, and the main numbers of the run."""
-    deepest = float(np.nanmax(run.skis.edge_depth)) / MM
-    return [
+    deepest, error = float(np.nanmax(run.skis.edge_depth)) / MM, json_number(run.energy_balance_error)
+    limits = [*model_limits(run.scenario.ski).values(), *(run_warnings(run) if error is not None else ())]
+    sentences = [
         prose("Outcome: {outcome}. {remedy}", outcome=outcome_words(run.outcome), remedy=run.remedy),
         prose(
             "{length} m in {time} s, from {first} to {last} m/s, maximum {most} m/s.",
@@ -187,18 +158,13 @@ def outcome_sentences(run: Run) -> list[Markup]:
             radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
         ),
         prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)),
-        *(prose("Warning: {text}.", text=text) for text in model_limits(run.scenario.ski).values()),
-        *_energy_sentences(run),
+        *(prose("Warning: {text}.", text=text) for text in limits),
     ]  # fmt: skip
-
-
-def _energy_sentences(run: Run) -> list[Markup]:
-    error = run.energy_balance_error
-    if error is None or json_number(error) is None:
-        return []
-    if warnings := run_warnings(run):
-        return [prose("Warning: {text}.", text=text) for text in warnings]
-    return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
+    if error is not None and not run_warnings(run):
+        sentences.append(
+            prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))
+        )
+    return sentences
 
 
 def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:

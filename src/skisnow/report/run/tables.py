@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -83,21 +83,15 @@ def _text(value: Any) -> str | None:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list | tuple):
-        return Message("{values:.10g}", values=tuple(value)) if _are_numbers(value) else str(list(value))
+        are_numbers = all(isinstance(cell, int | float) and not isinstance(cell, bool) for cell in value)
+        return Message("{values:.10g}", values=tuple(value)) if are_numbers else str(list(value))
     return Message("{value:.10g}", value=value) if isinstance(value, int | float) else str(value)
-
-
-def _are_numbers(values: Sequence[Any]) -> bool:
-    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
 
 
 def skis_table(run: Run) -> Table:
     """Table with total force, normal force and grip utilisation of each ski."""
     histories = run.skis.total_force, run.skis.normal_force, grip_utilisation(run), gross_grip_utilisation(run)
-    rows = [
-        (name, *(value for history in histories for value in _median_and_high(history[:, ski])))
-        for ski, name in enumerate(SKIS)
-    ]
+    rows = [(name, *(value for each in histories for value in _quantiles(each[:, i]))) for i, name in enumerate(SKIS)]
     return Table(
         "skis",
         Message("Force of the snow on each ski, and its grip utilisation: median and 95 % quantile over time."),
@@ -120,17 +114,18 @@ def skis_table(run: Run) -> Table:
     )
 
 
-def _median_and_high(values: FloatArray) -> tuple[float | None, float | None]:
+def _quantiles(values: FloatArray) -> list[float | None]:
     finite = values[np.isfinite(values)]
-    return (float(np.median(finite)), float(np.quantile(finite, 0.95))) if finite.size else (None, None)
+    return np.quantile(finite, [0.5, 0.95]).tolist() if finite.size else [None, None]
 
 
 def energies_table(summary: Json) -> Table:
     """Table of the energies at the start and the end, and of the losses."""
     energies = summary["energies"]
-    rows: list[tuple[Any, ...]] = [
-        (label, *_change(energies[f"{key.removesuffix('_J')}_start_J"], energies[key])) for key, label in _STORED
-    ]
+    rows: list[tuple[Any, ...]] = []
+    for key, label in _STORED:
+        start, end = energies[key.replace("_J", "_start_J")], energies[key]
+        rows.append((label, start, end, None if start is None or end is None else end - start))
     rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
     rows += [(label, None, energies[key], -energies[key]) for key, label in _GIVEN if energies.get(key)]
     error = summary["energy_balance_error"]
@@ -161,11 +156,6 @@ def energies_table(summary: Json) -> Table:
         rows,
         note=note,
     )
-
-
-def _change(start: float | None, end: float | None) -> tuple[float | None, float | None, float | None]:
-    """Start, end and change of an energy; None for values that are not finite."""
-    return start, end, None if start is None or end is None else end - start
 
 
 def verification_table(verification: Json) -> Table:

@@ -6,7 +6,6 @@ import math
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
@@ -152,14 +151,10 @@ def run_balance(run: Run) -> Figure:
     leans.set_ylim(-max(most, 1.0), max(most, 1.0))
     leans.set_ylabel(Message("lean, edge angle (°)\nto the left +"))
     left = np.cross(np.array([0.0, 0.0, 1.0]), boots.axes[:, :, 0])
-    forces = (
-        (run.skis.total_force, Message("total\nforce (N)")),
-        (run.skis.normal_force, Message("normal\nforce (N)")),
-        (np.einsum("nka,nka->nk", run.skis.force, left), Message("side force (N)\nto the left +")),
-    )
-    for axes, (values, label) in zip((totals, normals, sides), forces, strict=True):
-        draw_both(axes, run, values)
-        axes.set_ylabel(label)
+    side_force = np.einsum("nka,nka->nk", run.skis.force, left)
+    draw_both(totals, run, run.skis.total_force, Message("total\nforce (N)"))
+    draw_both(normals, run, run.skis.normal_force, Message("normal\nforce (N)"))
+    draw_both(sides, run, side_force, Message("side force (N)\nto the left +"))
     leans.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     for axes in (leans, totals):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
@@ -168,8 +163,8 @@ def run_balance(run: Run) -> Figure:
     return figure
 
 
-def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
-    """Draw a quantity of both skis with a line at 0; the axis omits 1 % of peaks."""
+def draw_both(axes: Axes, run: Run, values: FloatArray, label: str) -> None:
+    """Draw a quantity of both skis, shape (n, 2), with a line at 0; the axis omits 1 % of peaks."""
     for ski, (name, colour) in enumerate(zip(SKIS, (BLUE, ORANGE), strict=True)):
         hidden = ski == 0 and np.allclose(values[:, 0], values[:, 1])
         axes.plot(run.time, values[:, ski], color=colour, linewidth=2.4 if hidden else 0.8, label=name)
@@ -177,6 +172,7 @@ def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype
     room = 0.25 * max(high - low, 1.0)
     axes.set_ylim(low - 0.3 * room, high + room)
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    axes.set_ylabel(label)
 
 
 def run_boots(run: Run) -> Figure:
@@ -185,16 +181,11 @@ def run_boots(run: Run) -> Figure:
     panels = figure.subplots(4, 1, sharex=True)
     boots = run.boots
     assert boots is not None
-    ahead, left, up = range(3)
-    drawn = (
-        (edge_angles_of_skis(run) / DEGREE, Message("edge angle (°)\nto the left +")),
-        (boots.own_force[:, :, up], Message("force off\nthe base (N)")),
-        (boots.own_force[:, :, left], Message("force across (N)\nto the left +")),
-        (boots.own_moment[:, :, ahead], Message("edging moment\n(N m)")),
-    )
-    for axes, (values, label) in zip(panels, drawn, strict=True):
-        draw_both(axes, run, values)
-        axes.set_ylabel(label)
+    (_, across, off_base), (edging, _, _) = boots.own_force.T, boots.own_moment.T
+    draw_both(panels[0], run, edge_angles_of_skis(run) / DEGREE, Message("edge angle (°)\nto the left +"))
+    draw_both(panels[1], run, off_base.T, Message("force off\nthe base (N)"))
+    draw_both(panels[2], run, across.T, Message("force across (N)\nto the left +"))
+    draw_both(panels[3], run, edging.T, Message("edging moment\n(N m)"))
     panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2, frameon=False)
     label_time(panels[-1], run.time)
     figure.align_ylabels()
@@ -207,14 +198,14 @@ def run_grip(run: Run) -> Figure:
     axes = figure.subplots()
     net, gross = grip_utilisation(run), gross_grip_utilisation(run)
     dotted, dashed = (0, (1, 1)), (0, (4, 2))
+    handles = []
     for ski, colour in enumerate(SKI_COLOURS):
-        axes.plot(run.time, net[:, ski], color=colour, label=SKIS[ski])
+        handles += axes.plot(run.time, net[:, ski], color=colour, label=SKIS[ski])
         axes.plot(run.time, gross[:, ski], color=colour, linewidth=0.7, linestyle=dotted)
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=dashed)
     label_time(axes, run.time)
     axes.set_ylim(-0.02, max(1.12, 1.05 * float(np.nanmax(gross, initial=1.0))))
     axes.set_ylabel(Message("grip utilisation of\nthe ski (1: side-slip)"))
-    handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
     handles += [
         Line2D([], [], color=BLACK, label=Message("net")),
         Line2D([], [], color=BLACK, linewidth=0.7, linestyle=dotted, label=Message("gross")),
@@ -268,16 +259,17 @@ def run_along_ski(run: Run) -> Figure:
     depth, force = run.skis.edge_depth / MM, run.skis.force_per_length
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=112.0)
     grid = figure.subplots(2, 2, sharex=True, sharey=True)
-    for row, (values, label) in zip(
-        grid, ((depth, Message("edge depth (mm)")), (force, Message("normal force per length (N/m)"))), strict=True
-    ):
+    labels = Message("edge depth (mm)"), Message("normal force per length (N/m)")
+    for row, values, label in zip(grid, (depth, force), labels, strict=True):
         top = highest(values)
         for ski, axes in enumerate(row):
             mesh = along_ski_map(axes, run, np.where(values[:, ski] > 0.0, values[:, ski], np.nan), top)
-        figure.colorbar(
-            mesh, ax=list(row), label=label, pad=0.01, aspect=20, extend="max" if top < values.max() else "neither"
-        )
-    label_maps(grid)
+            axes.set(xlabel=Message("time (s)"), ylabel=Message("position along the ski (m);\nboot = 0, tip up"))
+            axes.label_outer()
+        extend = "max" if top < values.max() else "neither"
+        figure.colorbar(mesh, ax=list(row), label=label, pad=0.01, aspect=20, extend=extend)
+    for name, axes in zip(SKIS, grid[0], strict=True):
+        axes.set_title(name, loc="left", fontsize=8.0)
     return figure
 
 
@@ -296,13 +288,3 @@ def along_ski_map(axes: Axes, run: Run, values: FloatArray, top: float) -> QuadM
     axes.axhline(0.0, color=BLACK, linewidth=0.5, linestyle=(0, (4, 3)))
     axes.set_ylim(float(run.skis.station.min()), float(run.skis.station.max()))
     return mesh
-
-
-def label_maps(grid: npt.NDArray[np.object_]) -> None:
-    """Label maps with the names of the skis, time and station."""
-    for ski, axes in enumerate(grid[0]):
-        axes.set_title(SKIS[ski], loc="left", fontsize=8.0)
-    for axes in grid[-1]:
-        axes.set_xlabel(Message("time (s)"))
-    for axes in grid[:, 0]:
-        axes.set_ylabel(Message("position along the ski (m);\nboot = 0, tip up"))

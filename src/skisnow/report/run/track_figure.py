@@ -30,7 +30,6 @@ _GROOVES: Final = (
     Message("groove of the right ski, stretched across"),
 )
 CUTOUT: Final = 2.0  # length (m) of the enlarged part of the track
-_MARGIN: Final = 0.6
 _LARGEST_MM, _SMALLEST_MM = 130.0, 32.0
 _PLAN_MM: Final = DOUBLE_MM - 22.0  # width (mm) of the plan
 _FRAME_MM: Final = 38.0
@@ -44,7 +43,10 @@ _LABEL_POINTS: Final = 12.0  # distance of a time mark's text from the track (po
 
 def run_track(run: Run) -> Figure:
     """Draw the whole run with equal scales, and the grooves over a short distance at half time."""
-    limits = _with_space(track_limits(run.skis.track.reshape(-1, 3)))
+    x_low, x_high, y_low, y_high = track_limits(run.skis.track.reshape(-1, 3))
+    # at least the height of the lowest plan, as space for the texts at a long, flat run
+    lacking = max((x_high - x_low) * _SMALLEST_MM / _PLAN_MM - (y_high - y_low), 0.0)
+    limits = x_low, x_high, y_low - 0.4 * lacking, y_high + 0.6 * lacking
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DETAIL_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 12.0, _DETAIL_MM))
@@ -60,23 +62,17 @@ def run_track(run: Run) -> Figure:
     return figure
 
 
-def track_limits(points: FloatArray) -> tuple[float, float, float, float]:
-    """Minimum and maximum of x and of y of points (n, 2 or more), with a margin (m)."""
-    low, high = np.nanmin(points[:, :2], axis=0) - _MARGIN, np.nanmax(points[:, :2], axis=0) + _MARGIN
-    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
+def track_limits(points: FloatArray, *, margin: float = 0.6, share: float = 0.0) -> tuple[float, float, float, float]:
+    """Minimum and maximum of x and of y of points (n, 2 or more), with a margin (m) or a share of the larger extent."""
+    low, high = np.nanmin(points[:, :2], axis=0), np.nanmax(points[:, :2], axis=0)
+    room = max(share * float((high - low).max()), margin)
+    return float(low[0] - room), float(high[0] + room), float(low[1] - room), float(high[1] + room)
 
 
 def plan_height_mm(limits: tuple[float, float, float, float]) -> float:
     """Height (mm) of a plan as wide as the figure, between a minimum and a maximum."""
     x_low, x_high, y_low, y_high = limits
     return float(np.clip((y_high - y_low) / (x_high - x_low) * _PLAN_MM, _SMALLEST_MM, _LARGEST_MM))
-
-
-def _with_space(limits: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-    """Limits with at least the height of the lowest plan, as space for the texts at a long, flat run."""
-    x_low, x_high, y_low, y_high = limits
-    lacking = max((x_high - x_low) * _SMALLEST_MM / _PLAN_MM - (y_high - y_low), 0.0)
-    return x_low, x_high, y_low - 0.4 * lacking, y_high + 0.6 * lacking
 
 
 def plan_axes(
@@ -87,16 +83,12 @@ def plan_axes(
     labels: tuple[str, str] | None = None,
 ) -> None:
     """Set equal scales, x to the right and y up, and draw an arrow down the fall line without other labels."""
+    down = Message("horizontal distance $x$ (m)") if profile else Message("distance down the fall line $x$ (m)")
+    xlabel, ylabel = labels or (down, Message("to the left $y$ (m)"))
     axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(limits[0], limits[1])
-    axes.set_ylim(limits[2], limits[3])
-    axes.set_xlabel(
-        Message("horizontal distance $x$ (m)") if profile else Message("distance down the fall line $x$ (m)")
-    )
-    axes.set_ylabel(Message("to the left $y$ (m)"))
+    axes.set(xlim=limits[:2], ylim=limits[2:], xlabel=xlabel, ylabel=ylabel)
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
     if labels is not None:
-        axes.set(xlabel=labels[0], ylabel=labels[1])
         return
     axes.annotate(
         "", (0.21, 1.035), (0.08, 1.035), xycoords="axes fraction",  # right of the panel's letter

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Final, Literal
 
 import numpy as np
@@ -10,7 +11,6 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 
 from ..._support.arrays import FloatArray, IntArray
 from ..._support.messages import Message
@@ -18,8 +18,9 @@ from ...track.curvature import INTERVAL_FACTOR
 from ...track.summary import TrackSummary
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
 from ..formatting import counted
+from ..run.track_figure import plan_axes, track_limits
 
-_LABELS: Final = {
+LABELS: Final = {
     "file": ("$x$ (m)", "$y$ (m)"),
     "east_north_up": (Message("east (m)"), Message("north (m)")),
     "slope": (Message("distance down the fall line $x$ (m)"), Message("to the left $y$ (m)")),
@@ -73,30 +74,17 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
 
 def _new_map(summary: TrackSummary, lowest_mm: float) -> tuple[Figure, Axes]:
     """Figure with one map of the usable places, with equal scales and a least height."""
-    limits = map_limits(summary.track.place[summary.track.usable])
+    limits = track_limits(summary.track.place[summary.track.usable], margin=0.5, share=_MARGIN)
     height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, lowest_mm, _LARGEST_MM))
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
     axes = figure.add_subplot()
-    axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(limits[0], limits[1])
-    axes.set_ylim(limits[2], limits[3])
-    across, up = _LABELS[summary.track.axes]
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
-    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
+    plan_axes(axes, limits, labels=LABELS[summary.track.axes])
     return figure, axes
 
 
 def turns_are_distinct(summary: TrackSummary) -> bool:
     """True if the turns are drawn separately."""
     return len(summary.day.runs) == 1 and 0 < len(summary.turns) <= MOST_TURNS
-
-
-def map_limits(place: FloatArray) -> tuple[float, float, float, float]:
-    """Minimum and maximum of x and of y of places (n, 2 or more), with a margin (m)."""
-    low, high = np.nanmin(place[:, :2], axis=0), np.nanmax(place[:, :2], axis=0)
-    margin = max(_MARGIN * float((high - low).max()), 0.5)
-    return float(low[0] - margin), float(high[0] + margin), float(low[1] - margin), float(high[1] + margin)
 
 
 def drawn_points(first: int, last: int) -> IntArray:
@@ -184,24 +172,20 @@ def track_along(summary: TrackSummary) -> Figure:
     if with_height:
         _draw_height(grid[1], summary, numbers, arc_length / unit)
     _draw_radius(grid[-1], summary, arc_length / unit)
-    for axes in grid:
-        _tint_runs(axes, summary, arc_length / unit)
+    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label=Message("track"))]
+    handles.append(Patch(facecolor=PALE, alpha=0.7, label=Message("95 % interval of the radius, noise alone")))
+    if len(summary.day.runs) > 1 or summary.day.lifts:
+        handles.append(Patch(facecolor=SKY, alpha=0.3, label=Message("runs")))
+        for axes, run in product(grid, summary.day.runs):
+            ends = arc_length[[run.first, run.last]] / unit
+            axes.axvspan(*ends.tolist(), color=SKY, alpha=0.16, linewidth=0.0, zorder=0)
     grid[-1].set_xlabel(
         Message("distance along the track (km)") if unit == KILOMETRE else Message("distance along the track (m)")
     )
     grid[-1].set_xlim(0.0, float(arc_length[-1]) / unit)
     figure.align_ylabels()
-    figure.legend(handles=_legend_handles(summary), loc="outside lower center", ncols=4)
+    figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure
-
-
-def _tint_runs(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
-    if len(summary.day.runs) < 2 and not summary.day.lifts:
-        return
-    for run in summary.day.runs:
-        axes.axvspan(
-            float(arc_length[run.first]), float(arc_length[run.last]), color=SKY, alpha=0.16, linewidth=0.0, zorder=0
-        )
 
 
 def _with_gaps(summary: TrackSummary, numbers: IntArray, values: FloatArray) -> FloatArray:
@@ -293,11 +277,3 @@ def _radius_ticks(reach: float) -> tuple[list[float], list[str]]:
     radii = named_radii(reach)
     ticks = [*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))]
     return ticks, [*map(str, radii), Message("straight"), *map(str, reversed(radii))]
-
-
-def _legend_handles(summary: TrackSummary) -> list[Line2D | Patch]:
-    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label=Message("track"))]
-    handles.append(Patch(facecolor=PALE, alpha=0.7, label=Message("95 % interval of the radius, noise alone")))
-    if len(summary.day.runs) > 1 or summary.day.lifts:
-        handles.append(Patch(facecolor=SKY, alpha=0.3, label=Message("runs")))
-    return handles

@@ -15,13 +15,12 @@ from ...comparison import compare_tracks, comparison_dict
 from ...track.course.gates_table import GateGap, read_gate_gaps
 from ...track.read import read_track
 from ...track.summary import TrackSummary, track_summary
-from ..figures.drawing import Picture
-from ..figures.figure_files import render_pictures
+from ..figures.drawing import Picture, render_pictures
 from ..formatting import counted, html
-from ..pair_verdicts import read_compared, time_verdict
 from ..race.figures import gap_drawings
 from ..race.folder import gaps_headline, gaps_section
 from ..sheet import Header, Section, sheet
+from ..summaries import read_compared, time_verdict
 from ..table import Column, Table, record_table
 from .report import comparison_drawing, track_drawings
 from .summary import GPX_FILE, TITLES, TURNS_FILE, track_gpx, track_verdict, turn_rows, turns_csv

@@ -16,12 +16,12 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import require_writable, staged, write_file
 from ...comparison import Comparison, Distances
+from ...comparison.distances import DistanceStatistics, OffsetSeries
 from ...track.course import CourseResult
 from ...track.course.gates_table import gates_csv
 from ...track.summary import TrackSummary, summary_dict
 from ..figures.course import course_line
-from ..figures.drawing import Drawing
-from ..figures.figure_files import Progress, picture_files, silent, write_pictures
+from ..figures.drawing import Drawing, Progress, picture_files, silent, write_pictures
 from ..figures.style import (
     BLACK,
     BLUE,
@@ -36,7 +36,7 @@ from ..figures.style import (
 )
 from ..formatting import figure_text, json_text, prose, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
-from .figures import coloured_map, drawn_points, track_along, track_map
+from .figures import LABELS, coloured_map, drawn_points, track_along, track_map
 from .summary import GPX_FILE, POINTS_FILE, TITLES, TURNS_FILE, points_csv, track_gpx, turns_csv
 
 FIGURES: Final = ("map", "speed", "radius", "along", "course")
@@ -136,10 +136,6 @@ _HIDES: Final = 20.0
 _MARGIN: Final = 0.02
 _DISTANCES_MM: Final = 58.0
 _FRAME_MM: Final = 34.0
-_AXIS_WORDS: Final = {
-    "east_north_up": (Message("to the east $x$ (m)"), Message("to the north $y$ (m)")),
-    "file": ("$x$ (m)", "$y$ (m)"),
-}
 
 
 def track_comparison(comparison: Comparison) -> Figure:
@@ -148,14 +144,13 @@ def track_comparison(comparison: Comparison) -> Figure:
     if comparison.fitted is not None:
         lines.append(comparison.fitted.before.simulated)
     points = np.concatenate([line.place[:, :2] for line in lines])
-    room = _MARGIN * float(np.ptp(points, axis=0).max())
-    limits = track_limits(np.concatenate([points - room, points + room]))
+    limits = track_limits(points, margin=0.6 + _MARGIN * float(np.ptp(points, axis=0).max()))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
     plan = figure.add_subplot(grid[0])
     _draw_plan(plan, comparison)
-    plan_axes(plan, limits, labels=_AXIS_WORDS.get(comparison.axes))
+    plan_axes(plan, limits, labels=None if comparison.axes == "slope" else LABELS[comparison.axes])
     _draw_distances(figure.add_subplot(grid[1]), comparison)
     legend_below(figure, _legend_handles(comparison))
     return figure
@@ -163,8 +158,7 @@ def track_comparison(comparison: Comparison) -> Figure:
 
 def comparison_drawing(comparison: Comparison) -> Drawing:
     """Figure of `track_comparison` with its caption."""
-    simulated, measured = comparison.names
-    names = {"simulated": simulated, "measured": measured}
+    names = dict(zip(("simulated", "measured"), comparison.names, strict=True))
     caption = prose("{simulated} and {measured} from above, and the distance between them along the latter.", **names)
     alt = Message("{simulated} and {measured} from above, and the distance between them.", **names)
     return Drawing("track_comparison", caption, alt, track_comparison(comparison))
@@ -178,40 +172,37 @@ def _draw_plan(axes: Axes, comparison: Comparison) -> None:
         axes.plot(*_thinned(line.place[:, 0], line.place[:, 1]), **line_style)
         axes.plot(*line.place[0, :2], marker="o", markersize=3.2, linestyle="none", color=line_style["color"])
         axes.plot(*line.place[-1, :2], marker="s", markersize=3.2, linestyle="none", color=line_style["color"])
+    for apart, _, line_style in _computed_distances(comparison):
+        largest = int(np.nanargmax(apart.distance))  # a line between both places of the maximum distance
+        own = comparison.measured.at_arc_length(apart.arc_length[[largest]])[0, :2]
+        ends = np.stack([own, own + apart.offset[largest, :2]])
+        axes.plot(*ends.T, color=line_style["color"], linewidth=1.4, solid_capstyle="butt", zorder=4)
+
+
+def _computed_distances(
+    comparison: Comparison,
+) -> Iterator[tuple[OffsetSeries, DistanceStatistics, dict[str, Any]]]:
     for kind, line_style in LINE_STYLES.items():
-        _draw_maximum(axes, comparison, getattr(comparison, kind), line_style["color"])
-
-
-def _draw_maximum(axes: Axes, comparison: Comparison, distances: Distances, colour: str) -> None:
-    """Draw a line between both places of the maximum distance."""
-    if distances.numbers is None or distances.apart is None:
-        return
-    largest = int(np.nanargmax(distances.apart.distance))
-    own = comparison.measured.at_arc_length(distances.apart.arc_length[[largest]])[0, :2]
-    other = own + distances.apart.offset[largest, :2]
-    axes.plot([own[0], other[0]], [own[1], other[1]], color=colour, linewidth=1.4, solid_capstyle="butt", zorder=4)
+        distances: Distances = getattr(comparison, kind)
+        if distances.numbers is not None and distances.apart is not None:
+            yield distances.apart, distances.numbers, line_style
 
 
 def _draw_distances(axes: Axes, comparison: Comparison) -> None:
-    for kind, line_style in LINE_STYLES.items():
-        distances: Distances = getattr(comparison, kind)
-        if distances.numbers is None or distances.apart is None:
-            continue
-        axes.plot(*_thinned(distances.apart.arc_length, distances.apart.distance), **line_style)
-        place = (distances.numbers.max_at, distances.numbers.max)
-        axes.plot(
-            *place, marker="o", markersize=3.0, linestyle="none", color=line_style["color"], clip_on=False, zorder=4
-        )
+    largest = []
+    for apart, numbers, line_style in _computed_distances(comparison):
+        axes.plot(*_thinned(apart.arc_length, apart.distance), **line_style)
+        dot = {"color": line_style["color"], "marker": "o", "markersize": 3.0, "linestyle": "none"}
+        axes.plot(numbers.max_at, numbers.max, clip_on=False, zorder=4, **dot)
+        largest += [numbers.max] if numbers.max > EXACTNESS else []
     axes.set_xlim(0.0, comparison.measured.length)
-    every = [getattr(comparison, kind).numbers for kind in LINE_STYLES]
-    largest = [numbers.max for numbers in every if numbers is not None and numbers.max > EXACTNESS]
     if largest and max(largest) > _HIDES * min(largest):
         axes.set_yscale("log")
         axes.set_ylim(0.01 * min(largest), 2.0 * max(largest))
         axes.yaxis.set_major_formatter(plain_number)
     else:
         axes.set_ylim(bottom=0.0)
-    if comparison.axes in _AXIS_WORDS:  # two files: both may be measured
+    if comparison.axes != "slope":  # two files: both may be measured
         axes.set_xlabel(Message("distance along {track} (m)", track=figure_text(comparison.names[1], longest=40)))
         axes.set_ylabel(Message("distance between\nthe tracks (m)"))
     else:
@@ -234,19 +225,15 @@ def _legend_handles(comparison: Comparison) -> list[Line2D]:
     if comparison.fitted is not None:
         what = [FITTED.get(name, name) for name in comparison.fitted.what]
         label = Message("simulated: {simulated}, {fitted} fitted", simulated=simulated, fitted=what)
-    elif comparison.axes in _AXIS_WORDS:
+    elif comparison.axes != "slope":
         label = simulated
-    own = measured if comparison.axes in _AXIS_WORDS else Message("measured: {measured}", measured=measured)
-    handles = [
-        Line2D([], [], label=own, **MEASURED),
-        Line2D([], [], label=label, **SIMULATED),
-    ]
+    own = measured if comparison.axes != "slope" else Message("measured: {measured}", measured=measured)
+    handles = [Line2D([], [], label=own, **MEASURED), Line2D([], [], label=label, **SIMULATED)]
     if comparison.fitted is not None:
         handles.append(Line2D([], [], label=Message("simulated, before the fit"), **BEFORE))
     for kind, line_style in LINE_STYLES.items():
-        numbers = getattr(comparison, kind).numbers
-        text = (
-            Message("none") if numbers is None else Message("maximum {distance} m", distance=significant(numbers.max))
-        )
+        numbers, text = getattr(comparison, kind).numbers, Message("none")
+        if numbers is not None:
+            text = Message("maximum {distance} m", distance=significant(numbers.max))
         handles.append(Line2D([], [], label=f"{TITLES[kind]}: {text}", **line_style))
     return handles

@@ -263,13 +263,11 @@ def _fitted_lines(comparison: Mapping[str, Any]) -> Iterator[str]:
     if fitted["undetermined"]:
         yield f"  {fitted['undetermined']} direction(s) these tracks do not tell; nothing was moved along them"
     for kind, title in TITLES.items():
-        before, after = (_max_mean(state[kind], comparison["known_to_m"]) for state in (fitted["before"], comparison))
-        yield f"  {title}: largest and mean {before} before, {after} after"
-
-
-def _max_mean(distances: Mapping[str, Any], exact: float) -> str:
-    largest, mean = (metres(distances[key], exact) for key in ("max_m", "mean_m"))
-    return f"both {mean}" if largest == mean else f"{largest} and {mean}"
+        states = []
+        for state in (fitted["before"], comparison):
+            largest, mean = (metres(state[kind][key], comparison["known_to_m"]) for key in ("max_m", "mean_m"))
+            states.append(f"both {mean}" if largest == mean else f"{largest} and {mean}")
+        yield f"  {title}: largest and mean {states[0]} before, {states[1]} after"
 
 
 GRAVITY: Final = 9.81

@@ -129,17 +129,10 @@ def afterbody_depth_ratio(run: Run) -> float | None:
     """
     late = np.flatnonzero(run.time >= run.time[-1] / 2.0)
     depth = run.skis.edge_depth[late, loaded_skis(run)[late]]
-    behind, before = (_mean_depth(depth[:, part]) for part in (run.skis.station < 0.0, run.skis.station > 0.0))
-    ratio = behind / before
-    finite = ratio[np.isfinite(ratio)]
-    return float(np.median(finite)) if finite.size else None
-
-
-def _mean_depth(depth: FloatArray) -> FloatArray:
-    """Mean over the stations below the surface, shape (n,); NaN without one."""
-    below = depth > 0.0
-    count = below.sum(axis=1)
-    return np.where(count > 0, np.where(below, depth, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
+    depth = np.ma.masked_array(depth, mask=~(depth > 0.0))
+    behind, before = (depth[:, part].mean(axis=1) for part in (run.skis.station < 0.0, run.skis.station > 0.0))
+    ratio = np.ma.compressed(behind / before)
+    return float(np.median(ratio)) if ratio.size else None
 
 
 def used_grip(run: Run) -> tuple[float | None, float | None]:

@@ -55,26 +55,26 @@ def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     tracks: the ensemble, at least three. A run that ends earlier counts until its end.
     """
     aside, ahead = offsets(nominal, tracks)
-    band = band_of(aside)
-    outline = _outline(nominal, band)
-    points = np.concatenate([np.stack([t.x, t.y], axis=1) for t in (nominal, *tracks)])
-    limits = track_limits(points)
+    limits = track_limits(np.concatenate([np.stack([t.x, t.y], axis=1) for t in (nominal, *tracks)]))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 78.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 50.0))
     plan = figure.add_subplot(grid[0, :])
-    _draw_plan(plan, nominal, tracks, outline)
+    _draw_plan(plan, nominal, tracks, band_of(aside))
     plan_axes(plan, limits)
-    _draw_over_time(
-        figure.add_subplot(grid[1, 0]),
-        nominal.time,
-        aside,
-        Message("to the left of the nominal\nrun at the same time (m)"),
-    )
-    _draw_over_time(
-        figure.add_subplot(grid[1, 1]), nominal.time, ahead, Message("ahead of the nominal run\nat the same time (m)")
-    )
-    legend_below(figure, _legend_handles(len(tracks)))
+    labels = (Message("to the left of the nominal\nrun at the same time (m)"),
+              Message("ahead of the nominal run\nat the same time (m)"))  # fmt: skip
+    for column, (values, label) in enumerate(zip((aside, ahead), labels, strict=True)):
+        _draw_over_time(figure.add_subplot(grid[1, column]), nominal.time, values, label)
+    handles = [
+        Line2D([], [], color=VERMILLION, label=Message("nominal run")),
+        Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label=Message("median")),
+        Line2D([], [], color=SKY, alpha=0.6, linewidth=5.0, label=Message("half of the runs")),
+        Line2D([], [], color=PALE, alpha=0.6, linewidth=5.0, label=Message("90 % of the runs")),
+        Line2D([], [], color=GREY, linewidth=0.5, label=Message("each of {count} runs", count=len(tracks))),
+        Line2D([], [], color=BLACK, linestyle="none", marker=".", markersize=2.0, label=Message("end")),
+    ]
+    legend_below(figure, handles)
     return figure
 
 
@@ -104,15 +104,10 @@ def band_of(values: FloatArray) -> FloatArray:
     return band
 
 
-def _outline(nominal: TimedTrack, band: FloatArray) -> FloatArray:
-    """Places of the quantiles to the left of the nominal track, shape (5, n, 2)."""
+def _draw_plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], band: FloatArray) -> None:
     slope = np.unwrap(np.arctan2(np.gradient(nominal.y), np.gradient(nominal.x)))
     to_left = np.stack([-np.sin(slope), np.cos(slope)], axis=1)
-    middle = np.stack([nominal.x, nominal.y], axis=1)
-    return np.asarray(middle + band[:, :, None] * to_left)
-
-
-def _draw_plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], outline: FloatArray) -> None:
+    outline = np.stack([nominal.x, nominal.y], axis=1) + band[:, :, None] * to_left  # shape (5, n, 2)
     for (low, high), colour in zip(((0, 4), (1, 3)), (PALE, SKY), strict=True):
         finite = np.isfinite(outline[low, :, 0])
         rim = np.concatenate([outline[low, finite], outline[high, finite][::-1]])
@@ -133,17 +128,6 @@ def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str
     axes.axhline(0.0, color=VERMILLION, linewidth=0.8, zorder=3)
     label_time(axes, time)
     axes.set_ylabel(label)
-
-
-def _legend_handles(count: int) -> list[Line2D]:
-    return [
-        Line2D([], [], color=VERMILLION, label=Message("nominal run")),
-        Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label=Message("median")),
-        Line2D([], [], color=SKY, alpha=0.6, linewidth=5.0, label=Message("half of the runs")),
-        Line2D([], [], color=PALE, alpha=0.6, linewidth=5.0, label=Message("90 % of the runs")),
-        Line2D([], [], color=GREY, linewidth=0.5, label=Message("each of {count} runs", count=count)),
-        Line2D([], [], color=BLACK, linestyle="none", marker=".", markersize=2.0, label=Message("end")),
-    ]
 
 
 _SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")

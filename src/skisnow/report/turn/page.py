@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
 from ..._support.errors import ParameterError, require_language
-from ..._support.messages import ENGLISH, Message, in_language, outcome_words
+from ..._support.messages import ENGLISH, Message, in_language, outcome_words, template
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
 from ...simulation.run import Run
 from ...snow import SnowProperties
-from ..figures.drawing import Drawing, Picture
-from ..figures.figure_files import write_pictures
+from ..figures.drawing import Drawing, Picture, write_pictures
 from ..formatting import counted, html, json_text, prose, significant
 from ..run.tables import scenario_table
 from ..run.time_figures import run_along_ski, run_grip
@@ -39,9 +39,6 @@ from .chain import (
 )
 from .figures import FEWEST, draw_runs, track_band
 from .sentences import ensemble_accuracy, ensemble_sentence, headline, key_sentences, meaning
-
-FIGURES: Final = ("contacts", "along_ski", "grip", "band")
-"""Names of the figures of such a report, in figures/ as .png and .svg."""
 
 
 def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = ENGLISH) -> Path:
@@ -71,46 +68,43 @@ def turn_page(chain: TurnChain, pictures: Sequence[Picture]) -> str:
     return sheet(_make_header(chain), _make_sections(chain, pictures))
 
 
-def _make_drawings(chain: TurnChain) -> Iterator[Drawing]:
-    name, nominal = next(iter(chain.runs.items()))
-    yield Drawing(
-        "contacts",
-        prose(
+_DRAWINGS: Final[dict[str, tuple[Callable[[TurnChain], Figure], str, Message]]] = {
+    "contacts": (
+        lambda chain: draw_runs(chain.runs),
+        template(
             "The turn with each contact: from above, distance from the first track, and depth along the more heavily "
             "loaded ski. Squares: ends."
         ),
         Message("Tracks from above, distances and depth along the ski, one line for each contact."),
-        draw_runs(chain.runs),
-        wide=True,
-    )
-    yield Drawing(
-        "along_ski",
-        prose(
-            "Edge depth and normal force per length along both skis, {name}. White: no contact, or no force.",
-            name=html(name),
-        ),
+    ),
+    "along_ski": (
+        lambda chain: run_along_ski(chain.nominal),
+        template("Edge depth and normal force per length along both skis, {name}. White: no contact, or no force."),
         Message("Maps of edge depth and normal force per length over position along the ski and time."),
-        run_along_ski(nominal),
-        wide=True,
-    )
-    yield Drawing(
-        "grip",
-        prose("Grip utilisation of each ski: side force over the shear capacity S_f e, {name}.", name=html(name)),
+    ),
+    "grip": (
+        lambda chain: run_grip(chain.nominal),
+        template("Grip utilisation of each ski: side force over the shear capacity S_f e, {name}."),
         Message("Grip utilisation of each ski over time."),
-        run_grip(nominal),
-        wide=True,
-    )
-    yield Drawing(
-        "band",
-        prose(
+    ),
+    "band": (
+        lambda chain: track_band(middle_track(chain.nominal), [run.track for run in chain.ensemble]),
+        template(
             "The turn ({name}) with the unknown inputs of snow, friction and ski varied: tracks from above, and "
-            "below the distance of each run beside and ahead of the nominal one at the same time.",
-            name=html(name),
+            "below the distance of each run beside and ahead of the nominal one at the same time."
         ),
         Message("Band of tracks from above, and offsets over time."),
-        track_band(middle_track(nominal), [run.track for run in chain.ensemble]),
-        wide=True,
-    )
+    ),
+}
+"""Function, caption and alternative text of each figure of such a report, in figures/ by name."""
+FIGURES: Final = tuple(_DRAWINGS)
+
+
+def _make_drawings(chain: TurnChain) -> Iterator[Drawing]:
+    """All figures in order; each is drawn when it is requested, so that it gets the style in force."""
+    name = html(next(iter(chain.runs)))
+    for figure, (draw, caption, alt) in _DRAWINGS.items():
+        yield Drawing(figure, prose(caption, name=name), alt, draw(chain), wide=True)
 
 
 def _make_header(chain: TurnChain) -> Header:
@@ -201,17 +195,13 @@ def _provenance(chain: TurnChain) -> Markup:
 
 def parameters_table(snow: SnowProperties) -> Table:
     """Table of H_V and S_f with their intervals, and of k_u/H_V and u_y if they have one."""
-    rows: list[tuple[Any, ...]] = [
-        (Message("snow hardness H_V"), "N/mm³", _scaled(snow.snow_hardness, N_PER_MM3),
-         _scaled_interval(snow.snow_hardness_interval, N_PER_MM3)),
-        (Message("failure shear stress S_f"), "N/mm²", _scaled(snow.failure_shear_stress, N_PER_MM2),
-         _scaled_interval(snow.failure_shear_stress_interval, N_PER_MM2)),
-    ]  # fmt: skip
-    if snow.unloading_ratio_interval is not None:
-        rows.append(("k_u / H_V", "", snow.unloading_ratio, snow.unloading_ratio_interval))
-    if snow.shear_displacement_interval is not None:
-        way = _scaled(snow.shear_displacement, MM), _scaled_interval(snow.shear_displacement_interval, MM)
-        rows.append((Message("shear displacement u_y"), "mm", *way))
+    values = (
+        (Message("snow hardness H_V"), "N/mm³", N_PER_MM3, snow.snow_hardness, snow.snow_hardness_interval),
+        (Message("failure shear stress S_f"), "N/mm²", N_PER_MM2, snow.failure_shear_stress,
+         snow.failure_shear_stress_interval),
+        ("k_u / H_V", "", 1.0, snow.unloading_ratio, snow.unloading_ratio_interval),
+        (Message("shear displacement u_y"), "mm", MM, snow.shear_displacement, snow.shear_displacement_interval),
+    )  # fmt: skip
     return Table(
         "parameters",
         Message("The snow of the site, with 95 % intervals of the means."),
@@ -221,16 +211,12 @@ def parameters_table(snow: SnowProperties) -> Table:
             Column("value", Message("Value")),
             Column("interval", Message("95 % interval"), "interval"),
         ),
-        rows,
+        [
+            (name, unit, value and value / size, ends and [end / size for end in ends])
+            for i, (name, unit, size, value, ends) in enumerate(values)
+            if i < 2 or ends is not None
+        ],
     )
-
-
-def _scaled(value: float | None, unit: float) -> float | None:
-    return None if value is None else value / unit
-
-
-def _scaled_interval(interval: tuple[float, float] | None, unit: float) -> tuple[float, float] | None:
-    return None if interval is None else (interval[0] / unit, interval[1] / unit)
 
 
 def contacts_table(runs: Mapping[str, Run]) -> Table:
@@ -277,13 +263,12 @@ def _contact_row(name: str, run: Run) -> tuple[Any, ...]:
 
 def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
     """Table of the outcomes of the ensemble with the ranges of the sampled snow."""
-    counts = Counter(run.outcome for run in ensemble)
     rows = []
-    for outcome, count in counts.most_common():
-        those = [run for run in ensemble if run.outcome == outcome]
-        hardness = [run.snow.snow_hardness / N_PER_MM3 for run in those]
-        stress = [(run.snow.failure_shear_stress or 0.0) / N_PER_MM2 for run in those]
-        rows.append((outcome_words(outcome), count, (min(hardness), max(hardness)), (min(stress), max(stress))))
+    for outcome, count in Counter(run.outcome for run in ensemble).most_common():
+        snows = [run.snow for run in ensemble if run.outcome == outcome]
+        hardness = sorted(snow.snow_hardness / N_PER_MM3 for snow in snows)
+        stress = sorted((snow.failure_shear_stress or 0.0) / N_PER_MM2 for snow in snows)
+        rows.append((outcome_words(outcome), count, (hardness[0], hardness[-1]), (stress[0], stress[-1])))
     return Table(
         "ensemble",
         Message("How the runs of the ensemble ended, and the snow that was drawn for them."),
@@ -299,10 +284,13 @@ def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
 
 def shares_table(chain: TurnChain) -> Table:
     """Table of the inputs of the band with their shares in the variance at its end."""
-    shares, left_over = band_shares(middle_track(chain.nominal), chain.ensemble), []
+    shares = band_shares(middle_track(chain.nominal), chain.ensemble)
+    rows: list[tuple[Any, ...]] = [
+        (row.key, (row.low, row.high), row.in_words, *_shares_of(row.key, shares)) for row in band_inputs(chain)
+    ]
     if shares is not None:
         rest = ((100.0 * direction.left, None) for direction in (shares.aside, shares.ahead))
-        left_over = [(Message("left over"), None, "", *rest)]
+        rows.append((Message("left over"), None, "", *rest))
     return Table(
         "band_inputs",
         Message("Inputs of the band, and how much each adds to the variance of the places at its end."),
@@ -313,10 +301,7 @@ def shares_table(chain: TurnChain) -> Table:
             Column("aside_percent", Message("Share of the offset across"), "estimate", unit="%", digits=2),
             Column("ahead_percent", Message("Share of the offset along"), "estimate", unit="%", digits=2),
         ),
-        [
-            *((row.key, (row.low, row.high), row.in_words, *_shares_of(row.key, shares)) for row in band_inputs(chain)),
-            *left_over,
-        ],
+        rows,
         note=Message(
             "Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
             "intervals. The rest is proportional to no input: curvature, thresholds such as an edge that loses its "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -56,32 +56,28 @@ _FURTHER: Final = {
 def key_sentences(chain: TurnChain) -> list[Markup]:
     """Key sentences: snow, contacts, band, and warnings near the limit of grip."""
     contacts = [_contact_sentence(name, run) for name, run in chain.runs.items()]
-    spreads = [_band_sentence(chain), *_spreads(chain), *_largest_share(chain)]
+    band = prose(
+        "Over all that is not known, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
+        **_band_fields(chain),
+    )
     warnings = [prose("Warning: {text}.", text=text) for text in chain.warnings]
+    spreads = [band, *_spreads(chain), *_largest_share(chain)]
     return [_snow_sentence(chain), *contacts, *contrast(chain), *spreads, *warnings]
 
 
 def headline(chain: TurnChain) -> Markup:
     """Sentence with the turn radius and the precision of the end of the run."""
     radius = median_radius(chain.nominal)
-    aside, ahead = _band_widths(chain)
-    fields = {
-        "aside": significant(aside, 2),
-        "ahead": significant(ahead, 2),
-        "runs": counted(len(chain.ensemble), "{count} run", "{count} runs"),
-    }
-    if radius is None:
-        return prose(
-            "The run is straight; its end is known within {aside} m across and {ahead} m along the track (90 % of "
-            "{runs}).",
-            **fields,
-        )
-    return prose(
+    sentence = template(
         "Turn radius {value} (median); its end is known within {aside} m across and {ahead} m along the track (90 % of "
-        "{runs}).",
-        value=Markup("<strong>{} m</strong>").format(significant(radius)),
-        **fields,
+        "{runs})."
     )
+    if radius is None:
+        sentence = template(
+            "The run is straight; its end is known within {aside} m across and {ahead} m along the track (90 % of "
+            "{runs})."
+        )
+    return prose(sentence, value=Markup("<strong>{} m</strong>").format(significant(radius)), **_band_fields(chain))
 
 
 def plain_sentences(chain: TurnChain) -> list[Markup]:
@@ -89,50 +85,39 @@ def plain_sentences(chain: TurnChain) -> list[Markup]:
     return [*contrast(chain), *_spreads(chain)]
 
 
-def _spreads(chain: TurnChain) -> list[Markup]:
-    """Sentence that lists the inputs with a measured spread and those with a prior; empty without inputs."""
-    inputs = list(band_inputs(chain))
-    if not inputs:
-        return []
-    measured, assumed = (
-        _key_list([row.key for row in inputs if row.spread == spread]) for spread in ("measured", "prior")
-    )
-    return [
-        prose(
+def _spreads(chain: TurnChain) -> Iterator[Markup]:
+    """Sentence that lists the inputs with a measured spread and those with a prior; none without inputs."""
+    lists, inputs = [], list(band_inputs(chain))
+    for spread in ("measured", "prior"):
+        *before, last = [_in_words(row.key) for row in inputs if row.spread == spread] or [prose("nothing")]
+        joined = prose("{before} and {last}", before=Markup(", ").join(before), last=last)
+        lists.append(joined if before else last)
+    if inputs:
+        yield prose(
             "The band draws {measured} from the intervals that the campaign measured, {assumed} from priors.",
-            measured=measured,
-            assumed=assumed,
+            measured=lists[0],
+            assumed=lists[1],
         )
-    ]
 
 
-def _key_list(keys: Sequence[str]) -> Markup:
-    *before, last = [_in_words(key) for key in keys] or [prose("nothing")]
-    return prose("{before} and {last}", before=Markup(", ").join(before), last=last) if before else last
-
-
-def _largest_share(chain: TurnChain) -> list[Markup]:
-    """Sentence with the input of the largest share in the variance across the track; empty without shares."""
+def _largest_share(chain: TurnChain) -> Iterator[Markup]:
+    """Sentence with the input of the largest share in the variance across the track; none without shares."""
     shares = _shares(chain)
     if shares is None:
-        return []
+        return
     first, *others = np.argsort(-shares.aside.share, kind="stable").tolist()
-    fields = {
-        "key": _in_words(shares.keys[first]),
-        "percent": significant(100.0 * float(shares.aside.share[first]), 2),
-        "interval": interval((100.0 * shares.aside.interval[first]).tolist(), 2),
-    }
-    if not others:
-        return [
-            prose("Most of that across the track comes from {key}: {percent} % of the variance {interval}.", **fields)
-        ]
-    return [
-        prose(
-            "Most of that across the track comes from {key}: {percent} % of the variance {interval}; next is {second}.",
-            second=_in_words(shares.keys[others[0]]),
-            **fields,
+    sentence = template("Most of that across the track comes from {key}: {percent} % of the variance {interval}.")
+    if others:
+        sentence = template(
+            "Most of that across the track comes from {key}: {percent} % of the variance {interval}; next is {second}."
         )
-    ]
+    yield prose(
+        sentence,
+        key=_in_words(shares.keys[first]),
+        percent=significant(100.0 * float(shares.aside.share[first]), 2),
+        interval=interval((100.0 * shares.aside.interval[first]).tolist(), 2),
+        second=_in_words(shares.keys[others[0]]) if others else "",
+    )
 
 
 def _in_words(key: str) -> Markup:
@@ -146,33 +131,27 @@ def _shares(chain: TurnChain) -> BandShares | None:
 
 
 def _snow_sentence(chain: TurnChain) -> Markup:
-    snow = chain.snow
-    of_hardness, of_stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
+    snow, ratio, displacement = chain.snow, Markup(""), Markup("")
+    if snow.unloading_ratio is not None and snow.unloading_ratio_interval is not None:
+        value, ends = significant(snow.unloading_ratio), interval(snow.unloading_ratio_interval)
+        ratio = prose(", k_u / H_V {value} {ends}", value=value, ends=ends)
+    if snow.shear_displacement is not None and snow.shear_displacement_interval is not None:
+        value, ends = significant(snow.shear_displacement / MM), _interval_in(MM, snow.shear_displacement_interval)
+        displacement = prose(", u_y {value} mm {ends}", value=value, ends=ends)
     return prose(
         "Snow of {site}: H_V {hardness} N/mm³ {of_hardness}, S_f {stress} N/mm² {of_stress}{ratio}{displacement}.",
         site=chain.site,
-        ratio=_ratio(snow.unloading_ratio, snow.unloading_ratio_interval),
-        displacement=_displacement(snow.shear_displacement, snow.shear_displacement_interval),
+        ratio=ratio,
+        displacement=displacement,
         hardness=significant(snow.snow_hardness / N_PER_MM3),
-        of_hardness=interval(of_hardness and [end / N_PER_MM3 for end in of_hardness]),
+        of_hardness=_interval_in(N_PER_MM3, snow.snow_hardness_interval),
         stress=significant(None if snow.failure_shear_stress is None else snow.failure_shear_stress / N_PER_MM2),
-        of_stress=interval(of_stress and [end / N_PER_MM2 for end in of_stress]),
+        of_stress=_interval_in(N_PER_MM2, snow.failure_shear_stress_interval),
     )
 
 
-def _ratio(value: float | None, ends: tuple[float, float] | None) -> Markup:
-    """k_u/H_V with its interval; empty if it was not measured."""
-    is_measured = value is not None and ends is not None
-    return (
-        prose(", k_u / H_V {value} {ends}", value=significant(value), ends=interval(ends)) if is_measured else html("")
-    )
-
-
-def _displacement(value: float | None, ends: tuple[float, float] | None) -> Markup:
-    """u_y with its interval; empty without one."""
-    if value is None or ends is None:
-        return html("")
-    return prose(", u_y {value} mm {ends}", value=significant(value / MM), ends=interval([end / MM for end in ends]))
+def _interval_in(unit: float, ends: tuple[float, float] | None) -> str:
+    return interval(ends and [end / unit for end in ends])
 
 
 def _contact_sentence(name: str, run: Run) -> Markup:
@@ -197,86 +176,63 @@ def contrast(chain: TurnChain) -> list[Markup]:
 
 
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
-    grips = used_grip(run)[0], used_grip(reference)[0]
-    ratios = afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
-    grip = prose(_GRIPS[_compared(*grips)], values=_value_against_other(*grips))
+    names = {"name": name, "first": first}
+    radii = median_radius(run), median_radius(reference)
+    (grip, slips), (other_grip, other_slips) = used_grip(run), used_grip(reference)
+    slipping = [label for label, share in ((name, slips), (first, other_slips)) if (share or 0.0) > HELD]
+    slip = prose("“{who}” side-slips.", who=slipping[0]) if slipping else prose("Grip holds in both.")
     return [
-        _compare_radii(name, median_radius(run), first, reference),
-        Markup(" ").join([grip, _compare_slip(name, run, first, reference)]),
-        prose(_DEPTH_RATIOS[_compared(*ratios)], values=_value_against_other(*ratios)),
+        prose("The turn with the contact “{name}” or that with “{first}” never turns.", **names)
+        if None in radii
+        else _compare(_RADII, *radii, **names),
+        Markup(" ").join(
+            [_compare(_GRIPS, grip, other_grip), prose("Both side-slip.") if len(slipping) == 2 else slip]
+        ),
+        _compare(_DEPTH_RATIOS, afterbody_depth_ratio(run), afterbody_depth_ratio(reference)),
         prose("The tracks lie up to {distance} m apart.", distance=significant(maximum_distance(run, reference))),
     ]
 
 
 _GRIPS: Final = (
-    template("Its grip utilisation is lower: {values}."),
-    template("Its grip utilisation is the same: {values}."),
-    template("Its grip utilisation is higher: {values}."),
+    template("Its grip utilisation is lower: {value} against {other}."),
+    template("Its grip utilisation is the same: {value} against {other}."),
+    template("Its grip utilisation is higher: {value} against {other}."),
 )
 _DEPTH_RATIOS: Final = (
-    template("Its afterbody/forebody edge-depth ratio is smaller: {values}."),
-    template("Its afterbody/forebody edge-depth ratio is the same: {values}."),
-    template("Its afterbody/forebody edge-depth ratio is larger: {values}."),
+    template("Its afterbody/forebody edge-depth ratio is smaller: {value} against {other}."),
+    template("Its afterbody/forebody edge-depth ratio is the same: {value} against {other}."),
+    template("Its afterbody/forebody edge-depth ratio is larger: {value} against {other}."),
+)
+_RADII: Final = (
+    template(
+        "The turn with the contact “{name}” is narrower than that with “{first}”, by {percent} %: median radius "
+        "{value} against {other} m."
+    ),
+    template(
+        "The turn with the contact “{name}” is as wide as that with “{first}”: median radius {value} against {other} m."
+    ),
+    template(
+        "The turn with the contact “{name}” is wider than that with “{first}”, by {percent} %: median radius {value} "
+        "against {other} m."
+    ),
 )
 """Sentences for a value that is smaller than, equal to and larger than the other."""
 
 
-def _compare_radii(name: Markup, radius: float | None, first: Markup, reference: Run) -> Markup:
-    other = median_radius(reference)
-    if radius is None or other is None:
-        return prose("The turn with the contact “{name}” or that with “{first}” never turns.", name=name, first=first)
-    fields = {"name": name, "first": first, "percent": significant(100.0 * abs(radius / other - 1.0), 2),
-              "radius": significant(radius), "other": significant(other)}  # fmt: skip
-    if abs(radius / other - 1.0) < ALIKE:
-        return prose(
-            "The turn with the contact “{name}” is as wide as that with “{first}”: median radius {radius} against "
-            "{other} m.",
-            **fields,
-        )
-    if radius > other:
-        return prose(
-            "The turn with the contact “{name}” is wider than that with “{first}”, by {percent} %: median radius "
-            "{radius} against {other} m.",
-            **fields,
-        )
-    return prose(
-        "The turn with the contact “{name}” is narrower than that with “{first}”, by {percent} %: median radius "
-        "{radius} against {other} m.",
-        **fields,
-    )
-
-
-def _compare_slip(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
-    """Sentence about which of two runs side-slip."""
-    sliding = [label for label, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
-    if not sliding:
-        return prose("Grip holds in both.")
-    return prose("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
-
-
-def _compared(value: float | None, other: float | None) -> int:
-    """0 if the value is smaller than the other, 1 if they are alike or unknown, 2 if it is larger."""
+def _compare(sentences: Sequence[str], value: float | None, other: float | None, /, **fields: str) -> Markup:
+    """The sentence for a value that is smaller than the other, alike or unknown, or larger."""
+    fields |= {"value": significant(value), "other": significant(other), "percent": ""}
     if value is None or other is None or abs(value - other) < ALIKE * abs(other):
-        return 1
-    return 2 if value > other else 0
+        return prose(sentences[1], **fields)
+    fields["percent"] = significant(100.0 * abs(value / other - 1.0), 2) if other else ""
+    return prose(sentences[2 if value > other else 0], **fields)
 
 
-def _value_against_other(value: float | None, other: float | None) -> str:
-    return str(Message("{value} against {other}", value=significant(value), other=significant(other)))
-
-
-def _band_sentence(chain: TurnChain) -> Markup:
-    aside, ahead = _band_widths(chain)
-    return prose(
-        "Over all that is not known, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
-        runs=counted(len(chain.ensemble), "{count} run", "{count} runs"),
-        aside=significant(aside, 2),
-        ahead=significant(ahead, 2),
-    )
-
-
-def _band_widths(chain: TurnChain) -> tuple[float, float]:
-    return band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
+def _band_fields(chain: TurnChain) -> dict[str, str]:
+    """Number of runs of the ensemble, and the widths of their band."""
+    aside, ahead = band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
+    runs = counted(len(chain.ensemble), "{count} run", "{count} runs")
+    return {"runs": runs, "aside": significant(aside, 2), "ahead": significant(ahead, 2)}
 
 
 def ensemble_sentence(chain: TurnChain) -> Markup:
@@ -310,13 +266,12 @@ def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
 def meaning(chain: TurnChain) -> list[Markup]:
     """Effects of the contact and of the unknown inputs on the track, and the measurement that would help most."""
     reference, *others = chain.runs.values()
-    aside, _ = _band_widths(chain)
     far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
     contacts = prose(
         "The choice of the contact moves the track by up to {far} m, the unknown inputs of the turn move it by "
         "{aside} m (width of the band with 90 % of the runs at the end).",
         far=significant(far, 2),
-        aside=significant(aside, 2),
+        aside=_band_fields(chain)["aside"],
     )
     grip = prose("The grip holds while the side force stays below the shear capacity: S_f times depth times length.")
     if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
@@ -324,15 +279,11 @@ def meaning(chain: TurnChain) -> list[Markup]:
             " An edge enters hard snow only a little and has little to hold: here the skis side-slip. A slower "
             "start, a gentler slope or softer snow brings them back on their edges."
         )
-    return [Markup(" ").join([contacts, *_best_measurement(chain)]), grip]
-
-
-def _best_measurement(chain: TurnChain) -> list[Markup]:
-    """Sentence with the measurement that would narrow the band most; empty without shares."""
     shares = _shares(chain)
-    if shares is None:
-        return []
-    key = shares.keys[int(np.argmax(shares.aside.share))]
-    tests = _FURTHER if key in {measured.key for measured in chain.measured} else {}
-    test = tests.get(key) or (_INPUTS[key][1] if key in _INPUTS else Message("a better value of {key}", key=key))
-    return [prose("The band would narrow most by {test}.", test=html(test))]
+    if shares is not None:
+        key = shares.keys[int(np.argmax(shares.aside.share))]
+        test = _INPUTS[key][1] if key in _INPUTS else Message("a better value of {key}", key=key)
+        if key in {measured.key for measured in chain.measured}:
+            test = _FURTHER.get(key, test)
+        contacts += prose(" The band would narrow most by {test}.", test=html(test))
+    return [contacts, grip]

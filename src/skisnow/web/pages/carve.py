@@ -17,7 +17,7 @@ from ..._support.messages import Message, joined, outcome_words
 from ..._support.spreadsheet_text import csv_text
 from ...report.campaign.page import RESULTS
 from ...report.formatting import significant
-from ...report.pair_verdicts import ski_verdict
+from ...report.summaries import ski_verdict
 from ...ski.ski_file import Sources
 from ..elements import Words, button, choice, link, named, page_frame
 from ..lab_skis import NOTHING, LabSkis

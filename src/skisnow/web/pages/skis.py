@@ -9,7 +9,8 @@ from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message, current_language, translations
-from ...report.charts import SkiDrawing, ski_drawing
+from ...report.charts import ski_columns, ski_facts
+from ...ski import Ski
 from ..elements import (
     Outcome,
     button,
@@ -127,7 +128,7 @@ class _SkisPage:
         skis, edited = loaded
         self._status.say(" ".join(item.warned for item in skis if item.warned))
         self._editor.show(edited.station, edited.cells)
-        self._show_skis([ski_drawing(item.ski) for item in skis])
+        self._show_skis([item.ski for item in skis])
 
     async def _check(self, edit: SkiEditInput) -> None:
         """Check a new text of a ski in a separate process with limits."""
@@ -141,17 +142,19 @@ class _SkisPage:
         others = (edited if word == EDITED else edit_ski_texts(SkiEditInput(*self._skis.texts(word))) for word in words)
         return list(others), edited
 
-    def _show_skis(self, drawn: list[SkiDrawing]) -> None:
+    def _show_skis(self, drawn: list[Ski]) -> None:
         self._facts.clear()
+        facts = [ski_facts(ski) for ski in drawn]
         with self._facts:
-            cells = add_ski_table([ski.name for ski in drawn], {fact: fact for fact in drawn[0].facts})
+            cells = add_ski_table([ski.name for ski in drawn], {fact: fact for fact in facts[0]})
             for fact, labels in cells.items():
-                for label, ski in zip(labels, drawn, strict=True):
-                    label.set_text(ski.facts[fact])
+                for label, texts in zip(labels, facts, strict=True):
+                    label.set_text(texts[fact])
         self._sources.clear()
         with self._sources:
             for ski in drawn:
-                source = translations(current_language()).gettext(ski.source) if ski.source else ""
+                source = " ".join(ski.source.split())
+                source = translations(current_language()).gettext(source) if source else ""
                 sentence(f"{ski.name}: {source}", "quiet")
         for key, chart in self._charts.items():
             chart.show(list(_chart_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
@@ -204,9 +207,10 @@ def _edited_texts(edit: SkiEditInput, name: str = "") -> tuple[str, str]:
     return (edit.text, edit.table) if edit.is_file else texts_of_ski(edited.ski)
 
 
-def _chart_lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
+def _chart_lines(key: str, drawn: list[Ski]) -> Iterator[ChartLine]:
     for number, ski in enumerate(drawn):
-        values = getattr(ski, key)
-        yield ChartLine(ski.station_m, values, number, name=ski.name)
+        columns = ski_columns(ski)
+        station, values = columns["station_m"], columns[key]
+        yield ChartLine(station, values, number, name=ski.name)
         if key == "half_width_mm":
-            yield ChartLine(ski.station_m, [-value for value in values], number)
+            yield ChartLine(station, [-value for value in values], number)
