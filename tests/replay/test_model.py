@@ -1,7 +1,6 @@
 """The model taken away: a GLB file by the letter of glTF 2.0, with the skis where the replay has them."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import DEGREE
-from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
+from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges
 from skisnow.replay.meshes import _strips, linear_light, round_above
 from skisnow.replay.page import ARRAY_TYPES
 from skisnow.replay.replay import groove_times, nearest_frame, quaternions
@@ -101,12 +100,6 @@ def test_linear_light_of_srgb() -> None:
 
 def test_the_end_of_a_scale_is_a_round_number_above() -> None:
     assert [round_above(value) for value in (1.0, 1.01, 1446.0, 2001.0, 0.0999)] == [1.0, 1.5, 1500.0, 3000.0, 0.1]
-
-
-def test_it_is_written_in_one_piece(replay: Replay, tmp_path: Path) -> None:
-    write_replay_model(replay, tmp_path / "turn.glb", TIME)
-    assert (tmp_path / "turn.glb").read_bytes() == replay_model(replay, TIME)
-    assert [place.name for place in tmp_path.iterdir()] == ["turn.glb"]
 
 
 def test_the_edges_lie_as_deep_as_the_simulator_says() -> None:

@@ -2,13 +2,12 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from skisnow._support.units import DEGREE
-from skisnow.replay import Replay, moving_replay_model, replay_of_run, ski_edges, write_moving_replay_model
+from skisnow.replay import Replay, moving_replay_model, replay_of_run, ski_edges
 from skisnow.replay.page import select_moments
 from skisnow.scenario import Profile, load_scenario
 from skisnow.simulation.run import Run
@@ -290,12 +289,6 @@ def test_one_moment_late_times_and_nearly_equal_ones() -> None:
 def test_five_seconds_are_some_megabytes() -> None:
     """A run of 5 s with 61 stations, more than the catalogue's skis have in a simulation."""
     assert len(moving_replay_model(replay_of_run(circle_run(count=501, duration=5.0)))) < 2_600_000
-
-
-def test_it_is_written_in_one_piece(replay: Replay, tmp_path: Path) -> None:
-    write_moving_replay_model(replay, tmp_path / "turn.glb", exaggeration=2.0)
-    assert (tmp_path / "turn.glb").read_bytes() == moving_replay_model(replay, exaggeration=2.0)
-    assert [place.name for place in tmp_path.iterdir()] == ["turn.glb"]
 
 
 def test_it_tells_what_it_exaggerates(replay: Replay) -> None:

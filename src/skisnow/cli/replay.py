@@ -107,20 +107,20 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
 
 
 def _write_replay(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
-    from ..replay import write_moving_replay_model, write_replay, write_replay_model
-    from ..replay.model import require_moment
+    from .._support.staging import write_file
+    from ..replay import moving_replay_model, replay_model, write_replay
 
     folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
-    if options.moment_s is not None:
-        require_moment(shown, options.moment_s)
+    time, exaggeration = options.moment_s, options.exaggeration
     with announced("writing"):
+        moment: dict[str, bytes] = {}
+        if time is not None:
+            moment[f"replay-{time:.2f}s.glb"] = replay_model(shown, time, exaggeration=exaggeration)
+        whole = {"replay.glb": moving_replay_model(shown, exaggeration=exaggeration)} if options.model else {}
         written = [write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language)]
-        if options.model:
-            written.append(folder / "replay.glb")
-            write_moving_replay_model(shown, written[-1], exaggeration=options.exaggeration)
-        if options.moment_s is not None:
-            written.append(folder / f"replay-{options.moment_s:.2f}s.glb")
-            write_replay_model(shown, written[-1], options.moment_s, exaggeration=options.exaggeration)
+        for name, content in (whole | moment).items():
+            write_file(folder / name, content)
+            written.append(folder / name)
     return written
 
 

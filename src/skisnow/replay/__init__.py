@@ -1,7 +1,7 @@
 """Replay of a simulated run: its arrays, their compact binary format, pages and glTF models."""
 
 from .from_run import replay_of_run
-from .model import moving_replay_model, replay_model, write_moving_replay_model, write_replay_model
+from .model import moving_replay_model, replay_model
 from .page import replay_bytes, replay_page, write_replay
 from .replay import Replay, ReplayTrack, measured_track, ski_edges
 from .run_file import replay_of_file
@@ -19,7 +19,5 @@ __all__ = [
     "replay_of_run",
     "replay_page",
     "ski_edges",
-    "write_moving_replay_model",
     "write_replay",
-    "write_replay_model",
 ]

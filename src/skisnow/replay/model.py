@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -12,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.staging import write_file
 from .meshes import (
     CORNERS,
     Glb,
@@ -36,9 +34,13 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     Metres; y is up as in glTF 2.0, and the node ``run`` below has the run's axes. Colours of vertices: normal force per
     length along the skis, residual depth along the groove, on the same scales as on the page.
 
-    Raises ParameterError: the time is outside of the run.
+    Raises ParameterError: the time is more than 0.01 s outside of the run.
     """
-    require_moment(replay, time)
+    first, last = replay.time[[0, -1]].tolist()
+    if not first - 0.01 <= time <= last + 0.01:
+        raise ParameterError("the run is from {first:g} to {last:g} s; {time:g} s is outside of it").tag(
+            "out_of_range", first=first, last=last, time=time
+        )
     frame = nearest_frame(replay, time)
     named = {"snow": snow_mesh(replay)}
     for ski, name in enumerate(SKI_NAMES):
@@ -52,24 +54,6 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in named.items()]
     run = model.node("run", rotation=rotation_to_gltf(replay.tilt), children=parts)
     return model.to_bytes(replay.title, [run])
-
-
-def require_moment(replay: Replay, time: float) -> None:
-    """Reject a time (s) that is more than 0.01 s outside of the run."""
-    first, last = replay.time[[0, -1]].tolist()
-    if not first - 0.01 <= time <= last + 0.01:
-        raise ParameterError("the run is from {first:g} to {last:g} s; {time:g} s is outside of it").tag(
-            "out_of_range", first=first, last=last, time=time
-        )
-
-
-def write_replay_model(replay: Replay, path: str | Path, time: float, *, exaggeration: float = 1.0) -> None:
-    """Write the model of a moment; see `replay_model`.
-
-    Raises ParameterError: as `replay_model`.
-    Raises OutputError: the file cannot be written.
-    """
-    write_file(path, replay_model(replay, time, exaggeration=exaggeration))
 
 
 GROOVE_STEP: Final = 0.05
@@ -103,14 +87,6 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     parts += [*_groove(model, shown), sledge, _camera(model, shown, times, places)]
     run = model.node("run", rotation=rotation_to_gltf(shown.tilt), children=parts, extras=_extras(shown, exaggeration))
     return model.to_bytes(shown.title, [run], cameras=_CAMERAS)
-
-
-def write_moving_replay_model(replay: Replay, path: str | Path, *, exaggeration: float = 1.0) -> None:
-    """Write the model of a whole replay; see `moving_replay_model`.
-
-    Raises OutputError: the file cannot be written.
-    """
-    write_file(path, moving_replay_model(replay, exaggeration=exaggeration))
 
 
 def _with_rising_times(replay: Replay) -> Replay:

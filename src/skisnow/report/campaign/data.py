@@ -14,7 +14,6 @@ import numpy.typing as npt
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.messages import Message
 from ..._support.units import N_PER_MM2, N_PER_MM3
-from ...campaign import QUALITY_FLAGS
 from ...campaign.records import Campaign
 from ...estimation import Analysis
 from ...estimation.hardness import Hardness, ShearStress
@@ -91,15 +90,6 @@ class ReportData:
     def synthetic(self) -> bool:
         """True if every table and figure must be marked *synthetic*."""
         return is_synthetic(self.campaign.name)
-
-    @cached_property
-    def names(self) -> frozenset[str]:
-        """Names from the campaign and flag codes, which are not translated."""
-        campaign = self.campaign
-        tables = [table for table in (campaign.penetration, campaign.shear) if table is not None]
-        experiments = [name for table in tables for name in table.experiment]
-        texts = (campaign.name, campaign.place, *campaign.observers, *self.sites, *campaign.tools, *campaign.plates)
-        return frozenset((*texts, *QUALITY_FLAGS, *experiments))
 
     @property
     def penetration(self) -> list[Json]:

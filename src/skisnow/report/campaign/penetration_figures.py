@@ -211,7 +211,7 @@ def _plot_against_hardness(
 ) -> SitePlot:
     """Points with intervals ``ends`` over the hardness of their series."""
     hardness = numbers(rows, "H_V_N_per_mm3")
-    plot = SitePlot.new(data, styles, _HARDNESS, label, height_mm=80.0)
+    plot = SitePlot(data, styles, _HARDNESS, label, height_mm=80.0)
     plot.draw(hardness, values, texts(rows, "site"), ends=ends, size=3.0)
     if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
         plot.axes.set_xscale("log")
@@ -226,7 +226,7 @@ def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
         return LeftOut(name, title, Message("no penetration experiment is used"))
     if not np.isfinite(data.pressed.density).any():
         return LeftOut(name, title, Message("the campaign gives no snow density at its penetration experiments"))
-    plot = SitePlot.new(data, styles, Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
+    plot = SitePlot(data, styles, Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
     n = _draw_hardness(plot, data.pressed.density)
     caption = prose(
         "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment."
@@ -241,7 +241,7 @@ def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawin
     if not np.isfinite(force).any():
         reason = Message("no used recording is at the site of a used penetration experiment")
         return LeftOut(name, Message("Snow hardness against the SnowMicroPen's mean force"), reason)
-    plot = SitePlot.new(data, styles, Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
+    plot = SitePlot(data, styles, Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
     n = _draw_hardness(plot, force)
     if spans_a_decade(force[np.isfinite(force)]):
         logarithmic(plot.axes, "x", force)

@@ -70,7 +70,7 @@ def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing 
     assert tests is not None  # some are used
     force, depth = numbers(data.shear, "F_t_N")[used], tests.penetration_depth[used] / MM
     labels = Message("penetration depth $e$ (mm)"), Message("failure shear force $F_\\mathrm{{t}}$ (N)")
-    plot = SitePlot.new(data, styles, *labels, height_mm=76.0)
+    plot = SitePlot(data, styles, *labels, height_mm=76.0)
     plot.draw(depth, force, data.sheared.site)
     plot.start_at_zero("x", depth, 1.06)
     plot.start_at_zero("y", force, 1.08)
@@ -99,7 +99,7 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
         return LeftOut(name, Message("Failure shear stress against edge angle"), reason)
     chosen = np.isin(data.sheared.site, [row["group"] for row in rows])
     theta, stress, site = _edge_angles(data)[chosen], data.sheared.value[chosen], data.sheared.site[chosen]
-    plot = SitePlot.new(data, styles, _ANGLE, _STRESS, height_mm=70.0)
+    plot = SitePlot(data, styles, _ANGLE, _STRESS, height_mm=70.0)
     plot.draw(theta / DEGREE, stress, site, ends=data.sheared.interval[chosen])
     for style, mask in masks(styles, site):
         for row in rows:
@@ -153,7 +153,7 @@ def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
     row, upright = softest
     at_site = data.sheared.site == row["group"]
     stress = data.sheared.value[at_site]
-    plot = SitePlot.new(data, styles, _ANGLE, r"$F_\mathrm{t}/(L\,e)$ (N/mm²)", height_mm=70.0)
+    plot = SitePlot(data, styles, _ANGLE, r"$F_\mathrm{t}/(L\,e)$ (N/mm²)", height_mm=70.0)
     plot.draw(_edge_angles(data)[at_site] / DEGREE, stress, data.sheared.site[at_site])
     theta = np.linspace(2.0, 90.0, 400)
     for friction, width, label in _CURVES:
@@ -183,7 +183,7 @@ def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | L
     if not finite.any():
         return LeftOut(name, title, Message("the campaign gives no snow density at its shear experiments"))
     density, stress = tests.density[finite], tests.value[finite]
-    plot = SitePlot.new(data, styles, Message("snow density $\\rho$ (kg/m³)"), _STRESS, height_mm=76.0)
+    plot = SitePlot(data, styles, Message("snow density $\\rho$ (kg/m³)"), _STRESS, height_mm=76.0)
     plot.draw(density, stress, tests.site[finite])
     row = data.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
     if row is not None:
@@ -225,7 +225,7 @@ def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
         return LeftOut(name, Message("Failure shear stress against snow hardness"), reason)
     hardness, stress = spots.columns[HARDNESS_KEY], spots.columns[STRESS_KEY]
     xlabel = Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")
-    plot = SitePlot.new(data, styles, xlabel, _STRESS, height_mm=70.0)
+    plot = SitePlot(data, styles, xlabel, _STRESS, height_mm=70.0)
     plot.draw(hardness, stress, np.array(spots.site))
     if spans_a_decade(hardness):
         logarithmic(plot.axes, "x", hardness)

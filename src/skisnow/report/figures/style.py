@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import matplotlib
@@ -241,29 +241,18 @@ def local_axes(figure: Figure) -> None:
                     vars(formatter)["fix_minus"] = local  # Matplotlib calls it for each number
 
 
-@dataclass(frozen=True)
 class SitePlot:
     """One panel of points by site, finished with title and legend.
 
     handles: handles of the legend, filled by the methods that draw.
     """
 
-    data: ReportData
-    styles: Sequence[SiteStyle]
-    figure: Figure
-    axes: Axes
-    handles: list[Line2D] = field(default_factory=list)
-
-    @classmethod
-    def new(
-        cls, data: ReportData, styles: Sequence[SiteStyle], xlabel: str, ylabel: str, *, height_mm: float
-    ) -> SitePlot:
-        """An empty panel with its labels."""
-        figure = new_figure(height_mm=height_mm)
-        axes = figure.add_subplot()
-        axes.set_xlabel(xlabel)
-        axes.set_ylabel(ylabel)
-        return cls(data, styles, figure, axes)
+    def __init__(
+        self, data: ReportData, styles: Sequence[SiteStyle], xlabel: str, ylabel: str, *, height_mm: float
+    ) -> None:
+        self.data, self.styles, self.figure = data, styles, new_figure(height_mm=height_mm)
+        self.axes = self.figure.add_subplot(xlabel=xlabel, ylabel=ylabel)
+        self.handles: list[Line2D] = []
 
     def draw(
         self, x: FloatArray, y: FloatArray, site: TextArray, *, ends: FloatArray | None = None,

@@ -104,9 +104,9 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
         Column(name, words, "text", unit="s" if name in _TIMES else "")
         for name, words in zip(GateGap._fields, headings, strict=True)
     ]
-    records = [
-        {"gate": gap.gate, "outcome": outcome_words(gap.outcome), "other_outcome": outcome_words(gap.other_outcome)}
-        | {name: text and local_number(text) for name, text in _time_texts(gap).items()}
+    records: list[dict[str, str | None]] = [
+        {name: text and local_number(text) for name, text in _time_texts(gap).items()}
+        | {"gate": gap.gate, "outcome": outcome_words(gap.outcome), "other_outcome": outcome_words(gap.other_outcome)}
         for gap in gaps
     ]
     note = Message("Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses.")

@@ -153,8 +153,8 @@ _FIGURES: Final = {
     "energies": RunFigure(
         run_energies,
         template(
-            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) Only "
-            "the losses."
+            "(a) Where the energy is and went; the potential energy is above its minimum. Everything on top of each "
+            "other must stay at the dashed line. (b) Only the losses."
         ),
         template("Stored energies and losses over time, stacked."),
     ),

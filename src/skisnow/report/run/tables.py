@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -10,42 +10,24 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message, outcome_words
 from ...scenario.keys import SCENARIO_KEYS
-from ...simulation.run import OPEN_SHARE, Run
+from ...simulation.run import LOST, OPEN_SHARE, STORED, Run
 from ...track.course import CourseResult
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
 from ..table import Column, Table
-from .time_figures import grip_utilisation, gross_grip_utilisation
+from .time_figures import ENERGY_STYLES, grip_utilisation, gross_grip_utilisation
 from .track_figure import SKIS
 
 Json = Mapping[str, Any]
 
-_STORED: Final = (
-    ("kinetic_J", Message("kinetic")),
-    ("potential_J", Message("potential")),
-    ("elastic_ski_J", Message("elastic, in the skis")),
-    ("elastic_snow_J", Message("elastic, in the snow")),
-    ("delayed_snow_J", Message("stored in the delayed depth of the snow")),
-)
-_LOST: Final = (
-    ("lost_penetration_J", Message("lost to the grooves")),
-    ("lost_shear_J", Message("lost to side-slip")),
-    ("lost_friction_J", Message("lost to friction")),
-    ("lost_drag_J", Message("lost to air drag")),
-    ("lost_damping_J", Message("lost to damping of the skis")),
-    ("lost_snow_damping_J", Message("lost to damping and delayed depth of the snow")),
-)
-_GIVEN: Final = (
-    ("given_boots_J", Message("from the motion of the boots")),
-    ("given_push_J", Message("given by a push")),
-)
+_GIVEN: Final = {
+    "given_boots_J": Message("from the motion of the boots"),
+    "given_push_J": Message("given by a push"),
+}
 
 
 def scenario_table(values: Json) -> Table:
-    """Table of the scenario's keys with value, unit and meaning.
-
-    values: values by full name, ``section.key``, or in sections as in a scenario file.
-    """
+    """Table of the scenario's keys with value, unit and meaning; ``values`` in sections as in a scenario file."""
     return Table(
         "scenario",
         Message("The scenario: every key with the value in force; a dash: not given."),
@@ -56,24 +38,12 @@ def scenario_table(values: Json) -> Table:
             Column("meaning", Message("Meaning"), "text"),
         ),
         [
-            (name, _text(value), key.unit if key else "", Message(key.meaning) if key else "")
-            for name, value in by_full_name(values)
-            for key in [SCENARIO_KEYS.get(name)]
+            (f"{section}.{name}", _text(value), key.unit if key else "", Message(key.meaning) if key else "")
+            for section, table in values.items()
+            for name, value in table.items()
+            for key in [SCENARIO_KEYS.get(f"{section}.{name}")]
         ],
     )
-
-
-def by_full_name(values: Json) -> Iterator[tuple[str, Any]]:
-    """Full names ``section.key`` with their values, also for values in sections.
-
-    >>> list(by_full_name({"run": {"duration_s": 5.0}, "snow.site": "A"}))
-    [('run.duration_s', 5.0), ('snow.site', 'A')]
-    """
-    for name, value in values.items():
-        if isinstance(value, Mapping):
-            yield from ((f"{name}.{key}", cell) for key, cell in value.items())
-        else:
-            yield name, value
 
 
 def _text(value: Any) -> str | None:
@@ -123,11 +93,12 @@ def energies_table(summary: Json) -> Table:
     """Table of the energies at the start and the end, and of the losses."""
     energies = summary["energies"]
     rows: list[tuple[Any, ...]] = []
-    for key, label in _STORED:
-        start, end = energies[key.replace("_J", "_start_J")], energies[key]
-        rows.append((label, start, end, None if start is None or end is None else end - start))
-    rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
-    rows += [(label, None, energies[key], -energies[key]) for key, label in _GIVEN if energies.get(key)]
+    for name in STORED:
+        start, end = energies[f"{name}_start_J"], energies[f"{name}_J"]
+        change = None if start is None or end is None else end - start
+        rows.append((ENERGY_STYLES[name][1], start, end, change))
+    rows += [(ENERGY_STYLES[name][1], None, energies[f"lost_{name}_J"], energies[f"lost_{name}_J"]) for name in LOST]
+    rows += [(label, None, energies[key], -energies[key]) for key, label in _GIVEN.items() if energies.get(key)]
     error = summary["energy_balance_error"]
     share = significant(None if error is None else 100.0 * error, 2)
     if error is None:

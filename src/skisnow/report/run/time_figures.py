@@ -79,9 +79,9 @@ def drawn_radius(radius: FloatArray) -> FloatArray:
     return np.where(np.abs(radius) <= min(_TIMES_MEDIAN * float(np.median(size)), STRAIGHT), radius, np.nan)
 
 
-_STYLES: Final = {
+ENERGY_STYLES: Final = {
     "kinetic": (BLUE, Message("kinetic")),
-    "potential": (SKY, Message("potential, above its minimum")),
+    "potential": (SKY, Message("potential")),
     "elastic_ski": (GREY, Message("in the bent skis")),
     "elastic_snow": (PALE, Message("in the pressed snow")),
     "delayed_snow": (SAND, Message("in the delayed depth")),
@@ -92,6 +92,7 @@ _STYLES: Final = {
     "damping": (BLACK, Message("lost: damping")),
     "snow_damping": (BROWN, Message("lost: damping of the snow")),
 }
+"""Colour and name of each energy."""
 _RATE: Final = ("delayed_snow", "snow_damping")
 
 
@@ -106,7 +107,7 @@ def run_energies(run: Run) -> Figure:
     total_axes.set_title(_residual_in_words(run), loc="left", fontsize=7.5)
     _draw_stack(losses, run, shares, LOST)
     losses.set_title(Message("losses alone"), loc="left", fontsize=7.5)
-    drawn = [style for name, style in _STYLES.items() if name not in _RATE or shares[name].any()]
+    drawn = [style for name, style in ENERGY_STYLES.items() if name not in _RATE or shares[name].any()]
     legend_below(figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in drawn])
     return figure
 
@@ -120,7 +121,7 @@ def stacked_energies(run: Run) -> dict[str, FloatArray]:
 
 def _draw_stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
     axes.stackplot(
-        run.time, [shares[name] for name in names], colors=[_STYLES[name][0] for name in names], linewidth=0.0
+        run.time, [shares[name] for name in names], colors=[ENERGY_STYLES[name][0] for name in names], linewidth=0.0
     )
     label_time(axes, run.time)
     axes.set_ylabel(Message("energy (J)"))

@@ -61,11 +61,8 @@ def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if values["start"]:
         time, scale = datetime.fromisoformat(values["start"]), values["time_scale"]
         yield "start", f"{date_words(time)}, {time:%H:%M:%S}{'' if scale == 'local' else f' {scale}'}"
-    if values.get("solutions"):
-        yield (
-            "carrier phase",
-            ", ".join(f"{count} {_SOLUTION_WORDS[name]}" for name, count in values["solutions"].items()),
-        )
+    if solutions := values.get("solutions"):
+        yield "carrier phase", ", ".join(f"{count} {_SOLUTION_WORDS[name]}" for name, count in solutions.items())
     yield "frame", values["frame"]
     distance = f"{plain(values['distance_m'], 5)} m{_interval(values['distance_interval_m'], 'm', 5)}"
     yield "distance", f"{distance}, {_DISTANCE_WORDS[values['distance_source']]}"
@@ -75,13 +72,13 @@ def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     speed = f"{plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
     yield "highest speed", f"{speed}, {_SPEED_WORDS[values['speed_source']]}"
     if smoothing["place_noise_m"] is not None:
-        bound = "at most " if smoothing["place_noise_is_bound"] else ""
-        yield (
-            "noise of the places",
-            f"{bound}{plain(smoothing['place_noise_m'], 2)} m a coordinate, from point to point",
-        )
+        noise = f"{plain(smoothing['place_noise_m'], 2)} m a coordinate, from point to point"
+        yield "noise of the places", f"at most {noise}" if smoothing["place_noise_is_bound"] else noise
     yield "smoothing", f"cubics by least squares in windows of {plain(smoothing['window_s'])} s"
-    yield "resolution", _resolution_text(smoothing)
+    length = smoothing["half_amplitude_wavelength_m"]
+    wave = "" if length is None else f" ({plain(length)} m at the median speed of the runs)"
+    halved = f"a curvature that swings in {plain(smoothing['half_amplitude_period_s'])} s{wave} is halved"
+    yield "resolution", f"{halved}, in {plain(smoothing['ninety_percent_period_s'])} s it keeps 90 %"
 
 
 def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
@@ -97,15 +94,6 @@ _SOLUTION_WORDS: Final = {
     "fixed": "points fixed to whole cycles", "float": "float", "code": "by the code alone",
 }  # fmt: skip
 _SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "horizontal, of the estimated path: no speeds are recorded"}
-
-
-def _resolution_text(smoothing: Json) -> str:
-    length = smoothing["half_amplitude_wavelength_m"]
-    metres = "" if length is None else f" ({plain(length)} m at the median speed of the runs)"
-    return (
-        f"a curvature that swings in {plain(smoothing['half_amplitude_period_s'])} s{metres} is halved, "
-        f"in {plain(smoothing['ninety_percent_period_s'])} s it keeps 90 %"
-    )
 
 
 _RUN_COLUMNS: Final = (

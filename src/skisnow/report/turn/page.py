@@ -16,7 +16,7 @@ from ..._support.errors import ParameterError, require_language
 from ..._support.messages import ENGLISH, Message, in_language, outcome_words, template
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
-from ...scenario.keys import scenario_values
+from ...scenario.keys import in_sections, scenario_values
 from ...simulation.run import Run
 from ...snow import SnowProperties
 from ..figures.drawing import Drawing, Picture, write_pictures
@@ -152,6 +152,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
         count=len(chain.ensemble),
         seed=chain.seed,
     )
+    scenario = in_sections(scenario_values(chain.nominal.scenario))
     return [
         Section("key-results", Message("Key results"), key=key_sentences(chain)),
         Section("snow", Message("The snow that was found"), words=[means], tables=[parameters_table(chain.snow)]),
@@ -176,7 +177,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
             after=[ensemble_sentence(chain)],
         ),
         Section("meaning", Message("Meaning"), words=meaning(chain)),
-        Section("scenario", Message("Scenario"), tables=[scenario_table(scenario_values(chain.nominal.scenario))]),
+        Section("scenario", Message("Scenario"), tables=[scenario_table(scenario)]),
         Section("provenance", Message("Provenance"), words=[_provenance(chain)]),
     ]
 
