@@ -100,6 +100,12 @@ class Skier(Declared):
         Label(Message("brakes to")),
         Allowed(0.0, 40.0, origin="choice: carved turns"),
     ] = 0.0
+    carves: Annotated[
+        bool,
+        Quantity("skier.carves", "whether turns through gates that skid up to the fall line carve behind it"),
+        Label(Message("carves behind the fall line")),
+        Condition("skier.steers", "gates"),
+    ] = False
     stops_after: Annotated[
         float,
         Quantity("skier.stops_after_s", "when a side-slip begins to stop"),

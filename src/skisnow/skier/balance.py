@@ -19,6 +19,7 @@ from ..track.course import Course
 from .carve import CarveControl, CarvesOverTime, Pursuit, Steering
 from .control import Balance, Controller, SkidControl, standing
 from .edges import Edges, ForceMap
+from .hybrid import CarvedLine
 from .plan import Gravity, HalfWaves, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of
 from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture, require_command
 from .seen import Moment, Seen, seen_at
@@ -139,7 +140,9 @@ class BalancedSkier:
     def follow(self, line: Line, apexes: Sequence[tuple[float, float]]) -> BuiltIn:
         """The control that follows a line with these apexes (m): skidding to a wanted speed, without one carving."""
         if self.skier.brakes_to:
-            return self.skidding(RecedingLine(line, apexes))
+            radius = self.scenario.ski.sidecut_radius_of_edge_line
+            carved = self.skier.carves
+            return self.skidding(CarvedLine(line, apexes, radius) if carved else RecedingLine(line, apexes))
         return self._carving(Pursuit(line, self.skier.line_rate))
 
     def skidding(self, plan: Plan) -> SkidControl:

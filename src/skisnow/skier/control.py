@@ -44,6 +44,8 @@ STEEPEST: Final = math.radians(34.0)
 (found by trial: of four starts there 34° passes three, 40 and 46° two)."""
 CARRIED: Final = 0.8
 """Share of the skis' heading to which a blade carries the body along (modelling assumption)."""
+LEAST_CARVE: Final = math.radians(3.0)
+"""Edge angle of a carve at least (rad) (modelling assumption)."""
 BOUND: Final = 12.75
 """Greatest acceleration that the edges are set for, 1.3 g (m/s²) (modelling assumption)."""
 ROLLING: Final = 0.05
@@ -150,7 +152,7 @@ class SkidControl:
         holds = self.grip * (self.snow.force(STEEPEST, outer) + self.snow.force(STEEPEST, inner))
         most = min(most, holds / self.body.mass)
         self._planned = planned = replace(found, force=np.clip(found.force, -most, most))
-        slips = self._slips(seen, planned)
+        slips = self._slips(seen, planned) * planned.slides
         self.slip = float(slips[0])
         if not planned.stands:
             heading = heading_ahead(planned, slips, normal, self.body.height, seen.speed)
@@ -195,6 +197,10 @@ class SkidControl:
 
     def _edge(self, seen: Seen, posture: Posture, soon: float) -> float:
         """Edge angle (rad) that gives the planned force, with the correction for balance."""
+        if self._planned.carves:
+            lean = abs(math.atan2(float(posture.numbers[1]), self.body.height))
+            side = self._planned.carves
+            return side * max(LEAST_CARVE, lean + side * self.balance.error)
         mass, gravity = self.body.mass, self.gravity.normal
         asked = soon / math.cos(self.slip) + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)
         asked = max(-BOUND, min(BOUND, asked))

@@ -54,13 +54,16 @@ class Gravity:
 class Planned:
     """Force to the left over mass (m/s²) and course (rad) at the moments `AHEAD`.
 
-    `heading` of the skis (rad), if the plan states it; otherwise it follows from the slip.
+    `heading` of the skis (rad), if the plan states it; otherwise it follows from the slip. `slides`: planned slip over
+    the one that brakes. `carves`: the side to which the skis carve now, 1 or -1; 0: they do not.
     """
 
     force: FloatArray
     course: FloatArray
     heading: float | None = None
     stands: bool = False
+    slides: FloatArray | float = 1.0
+    carves: float = 0.0
 
 
 class Plan(Protocol):
