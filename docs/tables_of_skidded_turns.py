@@ -11,8 +11,8 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).parents[1]))
 from benchmarks.page_tables import write_tables
-from benchmarks.skier.__main__ import NEAR, numbers, outcome, passed
-from benchmarks.skier.cases import CASES, Case, Start, starts
+from benchmarks.skier.__main__ import NEAR, carved, numbers, outcome, passed
+from benchmarks.skier.cases import CASES, HYBRID, Case, Start, starts
 
 from skisnow import Run, load_scenario, simulate
 from skisnow.scenario import scenario_values
@@ -38,6 +38,8 @@ COURSES = (
     Case("giant slalom 27 m, 17°", 17, 27.0, 6.5, 11.5, gates=5, ski="giant-slalom"),
 )
 """Courses that are not among the benchmark's cases, and by which no key was chosen."""
+HYBRID_STARTS = (40, 12, 40, 10)
+"""Disturbed starts of each case of turns that carve."""
 KEYS = (
     *("greatest_slip_deg", "least_slip_deg", "braking_per_s", "outer_share", "edge_rate_per_s", "leg_gain"),
     *("leg_yielding_per_s", "edge_gain", "pole_clearance_m"),
@@ -89,6 +91,30 @@ def disturbed() -> Iterator[str]:
         yield f"| {case.name} | {sum(near)} of {len(near)} | {sum(far)} of {len(far)} | {failed} |"
 
 
+def hybrid() -> Iterator[str]:
+    """Turns that carve behind the fall line: disturbed starts that finish, and turns that carve."""
+    heads = ("starts", "finished", "turns that carve", "speed at the end (m/s)", "largest load over 20 ms (weights)")
+    yield f"| case | {' | '.join(heads)} |"
+    yield "| --- |" + " ---: |" * len(heads)
+    for case, count in zip(HYBRID, HYBRID_STARTS, strict=True):
+        finished, turns, speeds, loads = 0, [], [], []
+        for start in starts(count, 57):
+            skier = BalancedSkier(case.scenario(start))
+            run = simulate(skier.scenario, boots=skier)
+            finished += outcome(run) == "finished"
+            turns += carved(skier, case)
+            speeds.append(run.speed[-1])
+            loads.append(numbers(run)[1])
+        cells = (
+            count,
+            finished,
+            f"{sum(turns)} of {len(turns)}",
+            f"{np.median(speeds):.1f}",
+            f"{np.median(loads):.1f}",
+        )
+        yield f"| {case.name} | {' | '.join(map(str, cells))} |"
+
+
 def wedge() -> Iterator[str]:
     """A wedge from 5 m/s down the fall line to a stop."""
     yield "| wedge | f | stopped | way (m) | toe-in, edge at most (°) | largest load (weights) |"
@@ -124,6 +150,6 @@ def _limits(skier: BalancedSkier) -> str:
 
 
 if __name__ == "__main__":
-    TABLES = {"skidded-starts": gates, "disturbed": disturbed, "wedge": wedge, "keys": keys}
+    TABLES = {"skidded-starts": gates, "disturbed": disturbed, "hybrid": hybrid, "wedge": wedge, "keys": keys}
     for chosen in sys.argv[1:] or TABLES:
         write_tables("validation/skier", {chosen: TABLES[chosen]()})

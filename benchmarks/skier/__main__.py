@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import csv
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from skisnow import Run, simulate, time_gates
+from skisnow.skier import BalancedSkier
+from skisnow.skier.posture import ASIDE, LEFT_EDGE
 
 from .cases import CASES, Case, Start, Straight, starts
 
@@ -49,6 +52,25 @@ def measured(case: Case | Straight, start: Start) -> list[object]:
     """Outcome, gates passed, mean speed (m/s), largest load over 20 ms (weights) and greatest lean (°) of a run."""
     run = simulate(case.scenario(start))
     return [outcome(run), passed(run), case.gates, *(f"{each:.3g}" for each in numbers(run))]
+
+
+def carved(skier: BalancedSkier, case: Case) -> list[bool]:
+    """Whether each turn carves, up to the last edge change that the skier reaches.
+
+    From the fall line to the edge change skis slip by less than 2° in at least half of the time, and then the median of
+    their edge angle is within 10° of the lean.
+    """
+    x, course, slip = np.array([(each.seen.place[0], each.seen.course, each.seen.slip) for each in skier.records]).T
+    posture = np.array([each.posture for each in skier.records])
+    lean = np.arctan2(np.abs(posture[:, ASIDE]), skier.scenario.sledge.centre_of_mass[1])
+    beyond = np.degrees(np.abs(posture[:, LEFT_EDGE]) - lean)
+    turns = []
+    for number in range(int(min(x.max() / case.down, case.gates - 1))):
+        turning_left = 1.0 if number % 2 else -1.0
+        behind = (x > case.down * number) & (x <= case.down * (number + 1)) & (turning_left * course > 0.0)
+        grips = behind & (np.abs(slip) < math.radians(2.0))
+        turns.append(bool(2 * grips.sum() >= behind.sum() > 0 and abs(np.median(beyond[grips])) < 10.0))
+    return turns
 
 
 def outcome(run: Run) -> str:

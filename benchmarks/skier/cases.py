@@ -87,6 +87,18 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True)
+class Hybrid(Case):
+    """Gates on the nominal snow, through which turns carve behind the fall line; `keys` of the skier."""
+
+    keys: tuple[tuple[str, float], ...] = ()
+
+    def scenario(self, start: Start) -> Scenario:
+        """From one start, of which speed and place count."""
+        base = Case.scenario(self, replace(start, hardness=1.0, strength=1.0))
+        return base.with_(carves=True, brakes_to_m_per_s=4.0, **dict(self.keys))
+
+
+@dataclass(frozen=True, slots=True)
 class Straight:
     """Straight down 10° of race piste over a profile of heights above it; attributes like those of `Case`."""
 
@@ -156,6 +168,19 @@ CASES: Final[tuple[Case | Straight, ...]] = (
     Straight("five rolls, 10°", 6.0, rolls, 8.0),
     Straight("kicker, 10°", 8.0, kicker, 4.0),
 )
+
+HYBRID: Final = (
+    Hybrid("one turn, 13 m, 15°", 15, 13.0, 3.0, 6.5, gates=2, duration=2.6, keys=(("pole_clearance_m", 0.5),)),
+    Hybrid("one turn, 13 m, 19°", 19, 13.0, 3.0, 7.0, gates=2, duration=2.6, keys=(("pole_clearance_m", 0.5),)),
+    Hybrid("20 gates, 16 m, 10°", 10, 16.0, 4.5, 6.0, keys=(("greatest_slip_deg", 38.0),)),
+    Hybrid(
+        "6 gates, 18 m, 15°",
+        *(15, 18.0, 6.0, 7.0),
+        gates=6,
+        keys=(("greatest_slip_deg", 45.0), ("least_slip_deg", 28.0)),
+    ),
+)
+"""Turns that carve behind the fall line, on the race piste. The first two last up to behind the edge change."""
 
 
 def starts(count: int, seed: int) -> list[Start]:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from benchmarks.skier.__main__ import outcome
-from benchmarks.skier.cases import CASES, Start, starts
+from benchmarks.skier.__main__ import carved, outcome
+from benchmarks.skier.cases import CASES, HYBRID, Start, starts
 
 from skisnow import Scenario, simulate
 from skisnow.skier import BalancedSkier
@@ -59,6 +59,23 @@ def test_the_outer_ski_bears_its_share_without_chatter(share: float) -> None:
     parts[rates < 5.0] = 0.0
     swings = np.fft.irfft(parts, 2 * len(forces), axis=0)[: len(forces)][np.abs(run.balance.lean) > np.radians(15.0)]
     assert np.sqrt((swings**2).mean(axis=0)).max() < 0.15 * scenario.sledge.mass * scenario.gravity
+
+
+def require_carves(start: Start, gates: int) -> None:
+    """All gates 16 m apart on 10° are passed, and each turn that ends carves behind the fall line."""
+    skier = BalancedSkier(replace(HYBRID[2], gates=gates).scenario(start))
+    assert outcome(simulate(skier.scenario, boots=skier)) == "finished"
+    assert carved(skier, replace(HYBRID[2], gates=gates)) == [True] * (gates - 1)
+
+
+def test_a_turn_that_skids_before_the_fall_line_carves_behind_it() -> None:
+    require_carves(Start(), gates=2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", starts(3, 57))
+def test_linked_turns_carve_behind_the_fall_line_from_disturbed_starts(start: Start) -> None:
+    require_carves(start, gates=8)
 
 
 def require_landing(scenario: Scenario) -> None:

@@ -14,6 +14,7 @@ from skisnow._support.units import name_with_values
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.edges import ForceMap
+from skisnow.skier.hybrid import CarvedLine
 from skisnow.skier.plan import AHEAD, STEP, Gravity, HalfWaves, Planned, RecedingLine, with_run_out
 from skisnow.skier.posture import AHEAD as FORE
 from skisnow.skier.posture import ASIDE, HIP, HIP_DAMPING, LEFT_EDGE, PITCH, RIGHT_TOE, RISE, STANCE
@@ -353,3 +354,19 @@ def test_a_hollow_presses_by_v2_over_its_radius_and_a_crest_takes_as_much(course
         expected = sign * 36.0 / radius * math.cos(course) ** 2
         assert skier._pressed(0.0, 0.0) == pytest.approx(expected, rel=2e-3)
         assert skier._stand_on(0.0, 0.0)[1].normal == pytest.approx(9.81 + expected, rel=1e-3)
+
+
+def test_a_carve_behind_the_fall_line_has_the_force_of_its_path_and_ends_at_20_degrees() -> None:
+    """v²/R + g sin α sin χ; the slip fades from 20 to 5° before the fall line, and after a carve there is none."""
+    apexes, gravity, degree = [(0.0, 0.0), (8.0, 2.5), (24.0, -2.5), (40.0, 2.5)], Gravity(9.66, 1.7), math.radians(1.0)
+    plan = CarvedLine(HalfWaves(apexes), apexes, 13.0)
+    skids = np.asarray(plan.ahead(saw(place=(4.0, 1.5), course=24 * degree, speed=8.0, slip=-0.3), gravity).slides)
+    assert skids[0] == 1.0
+    assert skids.min() == 0.0
+    at_apex = {"place": apexes[1], "speed": 8.0, "slip": degree, "turn_rate": -8.0 / 13.0}
+    carves = plan.ahead(saw(course=-3 * degree, **at_apex), gravity)
+    assert carves.carves == -1.0
+    assert carves.force[0] == pytest.approx(-64.0 / 13.0 - 1.7 * math.sin(3 * degree))
+    ended = plan.ahead(saw(course=-21 * degree, **at_apex), gravity)
+    assert ended.carves == 0.0
+    assert not np.asarray(ended.slides)[ended.force < 0.0].any()
