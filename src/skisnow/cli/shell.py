@@ -6,7 +6,6 @@ import argparse
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
@@ -15,11 +14,6 @@ from ..parameters.json_schema import Schema
 
 SHELLS: Final = ("bash", "zsh", "fish")
 WORDS: Final = "words"
-_NAMES: Final = {
-    "ski": ("ski", "ski_names"), "scenario": ("scenario", "scenario_names"), "published": ("snow", "published_names")
-}  # fmt: skip
-"""Package and function of the names that an option or argument can have, by the name that it is stored as."""
-
 _SCRIPTS: Final = {
     "bash": """\
 # skisnow in bash: eval "$(skisnow completion bash)", in ~/.bashrc
@@ -122,12 +116,19 @@ def _values(action: argparse.Action) -> list[str]:
 
 def _known_names(stored_as: str) -> list[str]:
     """Names of skisnow for an option or argument by the name that it is stored as."""
-    if stored_as == "changes":
+    if stored_as == "ski":
+        from ..ski import ski_names as names
+    elif stored_as == "scenario":
+        from ..scenario import scenario_names as names
+    elif stored_as == "published":
+        from ..snow import published_names as names
+    elif stored_as == "changes":
         from ..scenario.keys import SCENARIO_KEYS
 
         return [f"{name}=" for name in SCENARIO_KEYS]
-    package, function = _NAMES.get(stored_as, ("", ""))
-    return list(getattr(import_module(f"skisnow.{package}"), function)()) if package else []
+    else:
+        return []
+    return list(names())
 
 
 def add_man(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
