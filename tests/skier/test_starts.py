@@ -63,9 +63,9 @@ def test_the_outer_ski_bears_its_share_without_chatter(share: float) -> None:
 
 def require_carves(start: Start, gates: int) -> None:
     """All gates 16 m apart on 10° are passed, and each turn that ends carves behind the fall line."""
-    skier = BalancedSkier(replace(HYBRID[2], gates=gates).scenario(start))
+    skier = BalancedSkier(replace(HYBRID[3], gates=gates).scenario(start))
     assert outcome(simulate(skier.scenario, boots=skier)) == "finished"
-    assert carved(skier, replace(HYBRID[2], gates=gates)) == [True] * (gates - 1)
+    assert carved(skier, replace(HYBRID[3], gates=gates)) == [True] * (gates - 1)
 
 
 def test_a_turn_that_skids_before_the_fall_line_carves_behind_it() -> None:

@@ -357,16 +357,20 @@ def test_a_hollow_presses_by_v2_over_its_radius_and_a_crest_takes_as_much(course
 
 
 def test_a_carve_behind_the_fall_line_has_the_force_of_its_path_and_ends_at_20_degrees() -> None:
-    """v²/R + g sin α sin χ; the slip fades from 20 to 5° before the fall line, and after a carve there is none."""
+    """v²/(R cos ϑ) + g sin α sin χ with sin ϑ = v²/(R g). The slip fades from 20 to 5° before the fall line.
+
+    After a carve there is none.
+    """
     apexes, gravity, degree = [(0.0, 0.0), (8.0, 2.5), (24.0, -2.5), (40.0, 2.5)], Gravity(9.66, 1.7), math.radians(1.0)
     plan = CarvedLine(HalfWaves(apexes), apexes, 13.0)
     skids = np.asarray(plan.ahead(saw(place=(4.0, 1.5), course=24 * degree, speed=8.0, slip=-0.3), gravity).slides)
     assert skids[0] == 1.0
     assert skids.min() == 0.0
-    at_apex = {"place": apexes[1], "speed": 8.0, "slip": degree, "turn_rate": -8.0 / 13.0}
+    radius = 13.0 * math.sqrt(1.0 - (64.0 / (13.0 * 9.66)) ** 2)  # of a carve in balance
+    at_apex = {"place": apexes[1], "speed": 8.0, "slip": degree, "turn_rate": -8.0 / radius}
     carves = plan.ahead(saw(course=-3 * degree, **at_apex), gravity)
-    assert carves.carves == -1.0
-    assert carves.force[0] == pytest.approx(-64.0 / 13.0 - 1.7 * math.sin(3 * degree))
+    assert carves.carves == pytest.approx(-64.0 / 13.0)
+    assert carves.force[0] == pytest.approx(-64.0 / radius - 1.7 * math.sin(3 * degree))
     ended = plan.ahead(saw(course=-21 * degree, **at_apex), gravity)
     assert ended.carves == 0.0
     assert not np.asarray(ended.slides)[ended.force < 0.0].any()

@@ -44,6 +44,9 @@ STEEPEST: Final = math.radians(34.0)
 (found by trial: of four starts there 34° passes three, 40 and 46° two)."""
 CARRIED: Final = 0.8
 """Share of the skis' heading to which a blade carries the body along (modelling assumption)."""
+LEAST_SHARE: Final = 0.6
+"""Share of the widest carve's force below which a carve's edges are flattened until the skis slide, since carving skis
+would throw the body to the outside (found by trial: 0.8 leaves fewer carves)."""
 LEAST_CARVE: Final = math.radians(3.0)
 """Edge angle of a carve at least (rad) (modelling assumption)."""
 BOUND: Final = 12.75
@@ -197,13 +200,12 @@ class SkidControl:
 
     def _edge(self, seen: Seen, posture: Posture, soon: float) -> float:
         """Edge angle (rad) that gives the planned force, with the correction for balance."""
-        if self._planned.carves:
-            lean = abs(math.atan2(float(posture.numbers[1]), self.body.height))
-            side = self._planned.carves
-            return side * max(LEAST_CARVE, lean + side * self.balance.error)
         mass, gravity = self.body.mass, self.gravity.normal
         asked = soon / math.cos(self.slip) + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)
         asked = max(-BOUND, min(BOUND, asked))
+        if asked * self._planned.carves > LEAST_SHARE * self._planned.carves**2:
+            side, lean = math.copysign(1.0, asked), abs(math.atan2(float(posture.numbers[1]), self.body.height))
+            return side * max(LEAST_CARVE, lean + side * self.balance.error)
         outer = self.skier.outer_share * mass * gravity  # planned loads: measured ones would feed a bounce back
         angle = self.snow.edge(mass * abs(asked), (outer, mass * gravity - outer), self.grip)
         if abs(posture.edge) < SLIDING and self._planned.heading is None:

@@ -25,6 +25,8 @@ LEAST_FORCE: Final = 1.0
 """Planned force over mass (m/s²) from which a turn can be carved (modelling assumption)."""
 BLEND: Final = 3
 """Moments of a plan over which the force goes over to that of the carve (modelling assumption)."""
+STEEPEST_SINE: Final = 0.85
+"""Sine of the lean in balance up to which a carve gets tighter with the speed (modelling assumption)."""
 LEARNS: Final = 0.2
 """Share by which the radius of a carve follows that of the path from plan to plan (modelling assumption)."""
 
@@ -41,7 +43,7 @@ class CarvedLine(RecedingLine):
 
     def __init__(self, line: Line, apexes: Sequence[tuple[float, float]], radius: float) -> None:
         super().__init__(line, apexes)
-        self._sidecut = self._radius = radius
+        self._sidecut, self._share = radius, 1.0  # radius of a carve over the one in balance
         self._side = 0.0  # of the carve: 1 to the left, -1 to the right, 0 for none
         self._left = 0.0  # side of the turn whose carve has ended
 
@@ -52,8 +54,9 @@ class CarvedLine(RecedingLine):
         if self._left:
             return replace(planned, slides=np.where(np.sign(planned.force) == self._left, 0.0, 1.0))
         if self._side:
-            self._learn(seen)
-            self._quintic = (seen.place[0], 1.0, [0.0, 0.0, 0.5 * self._bend_of(seen.course), 0.0, 0.0, 0.0])
+            self._learn(seen, gravity)
+            bend = self._bend_of(seen.course, self._radius(seen.speed, gravity))
+            self._quintic = (seen.place[0], 1.0, [0.0, 0.0, 0.5 * bend, 0.0, 0.0, 0.0])
         return self._carved(planned, seen, gravity)
 
     def _begin_or_end(self, seen: Seen, force: FloatArray) -> None:
@@ -68,22 +71,28 @@ class CarvedLine(RecedingLine):
         if -BEGINS < side * seen.course < 0.8 * CARVES_TO:
             self._side = side
 
-    def _learn(self, seen: Seen) -> None:
-        """Adjust the radius to that of the path."""
+    def _radius(self, speed: float, gravity: Gravity) -> float:
+        """Radius (m) of a carve at a speed (m/s): R cos ϑ with the lean in balance, sin ϑ = v²/(R g), times a share."""
+        sine = min(STEEPEST_SINE, speed**2 / (self._sidecut * gravity.normal))
+        return self._share * self._sidecut * math.sqrt(1.0 - sine**2)
+
+    def _learn(self, seen: Seen, gravity: Gravity) -> None:
+        """Adjust the share to the radius of the path."""
         rate = self._side * seen.turn_rate
         if abs(seen.slip) < BLADE and rate > 0.0:
-            radius = max(0.6 * self._sidecut, min(2.0 * self._sidecut, seen.speed / rate))
-            self._radius += LEARNS * (radius - self._radius)
+            share = self._share * seen.speed / (rate * self._radius(seen.speed, gravity))
+            self._share += LEARNS * (max(0.6, min(1.6, share)) - self._share)
 
-    def _bend_of(self, course: float) -> float:
-        """Second derivative (1/m) of the path of a carve."""
+    def _bend_of(self, course: float, radius: float) -> float:
+        """Second derivative (1/m) of the path of a carve with a radius (m)."""
         slope = math.tan(max(-STEEPEST_COURSE, min(STEEPEST_COURSE, course)))
-        return self._side / self._radius * (1.0 + slope**2) ** 1.5
+        return self._side / radius * (1.0 + slope**2) ** 1.5
 
     def _carved(self, planned: Planned, seen: Seen, gravity: Gravity) -> Planned:
         """The plan with the force and the course of a carve from the fall line to `CARVES_TO`."""
         force, course = planned.force.copy(), planned.course.copy()
         side, speed = self._side or _side_of(force), max(seen.speed, SLOWEST)
+        radius = self._radius(speed, gravity)
         before = -side * course
         turns = np.sign(force) == side
         share = np.clip((before - FADES_TO) / (FADES_FROM - FADES_TO), 0.0, 1.0)
@@ -93,14 +102,15 @@ class CarvedLine(RecedingLine):
         at = seen.course if self._side or first == len(AHEAD) else float(course[first])
         i = first
         while i < len(AHEAD) and side * at <= CARVES_TO:
-            carved = side * speed**2 / self._radius + gravity.down * math.sin(at)
+            carved = side * speed**2 / radius + gravity.down * math.sin(at)
             weight = 1.0 if self._side else min(1.0, (i - first + 1) / BLEND)
             force[i] += weight * (carved - force[i])
             course[i], slides[i] = at, 0.0
-            at += STEP * speed * side / self._radius
+            at += STEP * speed * side / radius
             i += 1
         slides[i:] = np.where(turns[i:], 0.0, 1.0)
-        return replace(planned, force=force, course=course, slides=slides, carves=self._side)
+        least = self._side * speed**2 / self._sidecut
+        return replace(planned, force=force, course=course, slides=slides, carves=least)
 
     def _bend_at(self, i: int) -> float:
         """Second derivative (1/m) at an apex, where the line must not be tighter than the ski carves."""

@@ -55,7 +55,8 @@ class Planned:
     """Force to the left over mass (m/s²) and course (rad) at the moments `AHEAD`.
 
     `heading` of the skis (rad), if the plan states it; otherwise it follows from the slip. `slides`: planned slip over
-    the one that brakes. `carves`: the side to which the skis carve now, 1 or -1; 0: they do not.
+    the one that brakes. `carves`: acceleration (m/s²) of the
+    widest carve now; 0: the skis do not carve.
     """
 
     force: FloatArray
