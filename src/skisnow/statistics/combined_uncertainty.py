@@ -145,8 +145,7 @@ def resampling_counts(n_units: int, n_resamples: int, rng: np.random.Generator) 
     n_units: Units, and draws in each resample, ≥ 1.
     n_resamples: Resamples in all, ≥ 0.
     rng: Source of random numbers.
-    Yields: Arrays of some MB, shape (b, n_units): number of draws of each unit; every row sums to n_units. Floats, for
-        the product with the units' contributions: ``counts @ contributions``.
+    Yields: Arrays of some MB, shape (b, n_units): number of draws of each unit, as floats; every row sums to n_units.
 
     Examples
     --------
