@@ -359,7 +359,7 @@ def test_a_hollow_presses_by_v2_over_its_radius_and_a_crest_takes_as_much(course
 def test_a_carve_behind_the_fall_line_has_the_force_of_its_path_and_ends_at_20_degrees() -> None:
     """v²/(R cos ϑ) + g sin α sin χ with sin ϑ = v²/(R g). The slip fades from 20 to 5° before the fall line.
 
-    After a carve there is none.
+    After a carve the slip is 0.
     """
     apexes, gravity, degree = [(0.0, 0.0), (8.0, 2.5), (24.0, -2.5), (40.0, 2.5)], Gravity(9.66, 1.7), math.radians(1.0)
     plan = CarvedLine(HalfWaves(apexes), apexes, 13.0)

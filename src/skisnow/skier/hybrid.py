@@ -21,12 +21,16 @@ BLADE: Final = math.radians(3.0)
 """Slip below which a carve begins (measured: a ski follows its edge below 1 to 3°)."""
 BEGINS: Final = math.radians(6.0)
 """Course before the fall line from which a carve can begin (modelling assumption)."""
+BEGINS_BEFORE: Final = 0.8
+"""Share of `CARVES_TO` up to which a carve can begin (modelling assumption)."""
 LEAST_FORCE: Final = 1.0
 """Planned force over mass (m/s²) from which a turn can be carved (modelling assumption)."""
 BLEND: Final = 3
 """Moments of a plan over which the force goes over to that of the carve (modelling assumption)."""
 STEEPEST_SINE: Final = 0.85
 """Sine of the lean in balance up to which a carve gets tighter with the speed (modelling assumption)."""
+LEAST_RADIUS, MOST_RADIUS = 0.6, 1.6
+"""Range of the radius of a carve over that of one in balance (modelling assumption)."""
 LEARNS: Final = 0.2
 """Share by which the radius of a carve follows that of the path from plan to plan (modelling assumption)."""
 
@@ -68,7 +72,7 @@ class CarvedLine(RecedingLine):
         if self._side or self._left or abs(seen.slip) > BLADE or abs(force[0]) < LEAST_FORCE:
             return
         side = _side_of(force)
-        if -BEGINS < side * seen.course < 0.8 * CARVES_TO:
+        if -BEGINS < side * seen.course < BEGINS_BEFORE * CARVES_TO:
             self._side = side
 
     def _radius(self, speed: float, gravity: Gravity) -> float:
@@ -81,7 +85,7 @@ class CarvedLine(RecedingLine):
         rate = self._side * seen.turn_rate
         if abs(seen.slip) < BLADE and rate > 0.0:
             share = self._share * seen.speed / (rate * self._radius(seen.speed, gravity))
-            self._share += LEARNS * (max(0.6, min(1.6, share)) - self._share)
+            self._share += LEARNS * (max(LEAST_RADIUS, min(MOST_RADIUS, share)) - self._share)
 
     def _bend_of(self, course: float, radius: float) -> float:
         """Second derivative (1/m) of the path of a carve with a radius (m)."""
