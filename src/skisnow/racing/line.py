@@ -31,10 +31,11 @@ class LineTurn(ShownFields):
     """The turn at one gate.
 
     aside: Distance of the apex from the turning pole, to the side that is passed (m).
-    along: Distance of the apex from the pole down the course, over the way to the nearer neighbour: above 0 behind it.
+    along: Distance of the apex from the pole down the course, divided by that to the nearer neighbouring gate; above 0:
+        the apex is below the pole.
     turning: Share of half the way to the apexes before and behind over which the edges turn, 0.2 to 1: edging starts so
         far before the apex and ends so far behind it; the rest is straight. 1: half waves.
-    speed: Speed to which a skier in skidded turns brakes before the apex, over `brakes_to` of the scenario.
+    speed: Speed to which a skier in skidded turns brakes before the apex, divided by `brakes_to` of the scenario.
     """
 
     aside: float
@@ -48,11 +49,11 @@ NUMBERS: Final = tuple(number.name for number in fields(LineTurn))
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class RacingLine(Shown):
-    """Turns with straights between them, from apex to apex.
+    """Line of a racer: turns with straights between them, from apex to apex.
 
-    course: Its gates follow each other down the slope, x rising.
-    start: x, y (m) where it begins, down the slope.
-    turns: One for each gate.
+    course: Course whose gates follow each other down the slope, x rising.
+    start: x, y (m) of the first point; x counts down the slope.
+    turns: One turn for each gate.
     Raises ParameterError: the number of turns is not that of gates, a turn is too short, or the apexes do not follow
         each other down the slope.
 
@@ -135,7 +136,7 @@ class RacingLine(Shown):
         return self._y[i] + way * steepest * (2.0 * first / math.pi + u - first), steepest, 0.0
 
     def speed_at(self, x: float) -> float:
-        """Speed of the turn whose apex is next at a place down the slope (m), over the wanted one."""
+        """`LineTurn.speed` (a ratio) of the turn with the next apex after a place x down the slope (m)."""
         return self.turns[min(bisect_right(self._x, x, lo=1), len(self.turns)) - 1].speed
 
     def greatest_curvature(self) -> float:
@@ -153,7 +154,10 @@ class RacingLine(Shown):
 
 
 def _turn_shape(u: float, share: float, steepest: float, way: float) -> tuple[float, float, float]:
-    """Sideways place (m), slope and second derivative (1/m) at the share u of the way; the turn ends at `share`."""
+    """Sideways place (m), slope dy/dx and second derivative (1/m) of half a turn, at the share u of the way (m).
+
+    The turn begins at the apex, u = 0, and ends at u = `share`, with the slope `steepest`.
+    """
     rate = math.pi / (2.0 * share)
     sine, cosine = math.sin(rate * u), math.cos(rate * u)
     return way * steepest / rate * (1.0 - cosine), steepest * sine, steepest * rate / way * cosine
@@ -181,7 +185,7 @@ def skier_of(scenario: Scenario) -> Skier:
 
 
 def follower_line(scenario: Scenario) -> RacingLine:
-    """The line of a scenario's skier without a search: half waves past the poles at its clearance."""
+    """Line that a scenario's skier takes without a search: half waves that pass the poles at the skier's clearance."""
     course, start = course_of(scenario), (scenario.start.x, scenario.start.y)
     apexes = BalancedSkier(scenario).apexes(course)[1:]
     asides = [abs(y - gate.turning[1]) for (_, y), gate in zip(apexes, course.gates, strict=True)]
@@ -189,7 +193,7 @@ def follower_line(scenario: Scenario) -> RacingLine:
 
 
 def with_numbers(line: RacingLine, numbers: Sequence[Sequence[float]], first: int) -> RacingLine:
-    """Copy of a line with new numbers from a gate on: one row for each turn, in the order of `LineTurn`."""
+    """Copy of a line with new numbers of the turns from gate `first` (from 0) on: one row per turn, as `LineTurn`."""
     new = [
         replace(turn, **dict(zip(NUMBERS, row, strict=False)))
         for turn, row in zip(line.turns[first:], numbers, strict=False)
@@ -204,7 +208,7 @@ def first_gates(line: RacingLine, gates: int) -> RacingLine:
 
 
 def line_rows(line: RacingLine) -> list[list[str]]:
-    """The table's rows, without its head."""
+    """Cells of a line's CSV table, one row for each gate, without the header."""
     rows = []
     breaks = line.breaks
     for i, (gate, turn) in enumerate(zip(line.course.gates, line.turns, strict=True)):
@@ -228,8 +232,8 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     """Read a line that `write_line` wrote, for the first gates of a course.
 
     path: CSV with gate, aside_m, along, turning, speed; other columns are not read.
-    course: Has these gates, in this order, and perhaps more behind them.
-    start: x, y (m).
+    course: Course that begins with these gates, in this order.
+    start: x, y (m) of the line's first point.
     Raises ParameterError: it cannot be read, a column is missing, a cell is not a number, or its gates are not the
         course's.
     """

@@ -34,16 +34,16 @@ SLOWEST: Final = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PointRacer:
-    """A point that stays on its line, whatever the line.
+    """Model of a racer: a point with mass that stays exactly on its line.
 
     slope_angle: Inclination of the plane (rad).
-    mass: (kg).
-    friction, friction_by_speed: μ = friction + friction_by_speed · v, of the load on the base.
+    mass: Mass of the racer with skis (kg).
+    friction, friction_by_speed: μ = friction + friction_by_speed · v (s/m), of the load on the base.
     drag: ρ c A/2 (kg/m).
-    speed: At the start (m/s).
-    least_radius: A tighter line cannot be skied (m); 0: any.
-    half_width: Width of the racer (m): both sides have to pass a gate.
-    gravity: (m/s²).
+    speed: Speed at the start (m/s).
+    least_radius: Smallest radius (m) that can be skied; 0: any.
+    half_width: Half of the racer's width (m): both sides have to pass a gate.
+    gravity: Acceleration of gravity (m/s²).
 
     Notes
     -----
@@ -63,7 +63,7 @@ class PointRacer:
 
     @classmethod
     def of(cls, scenario: Scenario) -> PointRacer:
-        """Point of a scenario: its mass with skis, friction, drag and start; its ski at the skier's largest edge angle.
+        """Racer from a scenario; the smallest radius is that of its ski at the skier's largest edge angle.
 
         Raises ParameterError: the slope is not a plane, or the scenario has no skier.
         """
@@ -98,7 +98,7 @@ class PointRacer:
         return 2.0 * long * (down * cosine - friction - self.drag / self.mass * square), long / speed
 
     def motion(self, line: Line, breaks: Sequence[float]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Places down the slope (m), v² (m²/s²) and times (s), by breaks of the line; ends where it stops."""
+        """Places down the slope (m), v² (m²/s²) and times (s) of a run, in steps between breaks; it ends at a stop."""
         x, square, time = breaks[0], self.speed**2, 0.0
         rows = [(x, square, time)]
         for low, high in pairwise(breaks):
@@ -123,7 +123,7 @@ class PointRacer:
         )
 
     def race(self, line: RacingLine) -> tuple[CourseResult | None, tuple[float, float]]:
-        """Outcome at each gate, and the end of the run (m)."""
+        """Passages of the gates, None if the racer stops at once; and x and y (m) of the end of the run."""
         last = max(line.breaks[-1], line.course.gates[-1].turning[0])
         x, square, time = self.motion(line, [*line.breaks, last + BEHIND])
         if len(x) < 2:
@@ -136,7 +136,7 @@ class PointRacer:
         return passages(line.course, MovingPoint(time, place, velocity), sides), (float(x[-1]), float(y[-1]))
 
     def score(self, line: RacingLine) -> Score:
-        """Score of a line; a line that is too tight fails."""
+        """Score of a line; a line with a radius below `least_radius` fails."""
         result, end = self.race(line)
         own_score = score_of(result, end, finished=True, words="finished")
         tight = self.least_radius * line.greatest_curvature() - 1.0
@@ -156,10 +156,10 @@ RacerModel: TypeAlias = Literal["skier", "point"]
 
 
 class LineSkier:
-    """Moves the boots of a run as a balanced skier that steers by a line.
+    """Motion of the boots for `simulate`, of a balanced skier that steers along a racing line.
 
-    scenario: with a skier.
-    line: through its course.
+    scenario: scenario with a skier.
+    line: line through the scenario's course.
     """
 
     def __init__(self, scenario: Scenario, line: RacingLine) -> None:
@@ -168,11 +168,11 @@ class LineSkier:
 
     @property
     def period(self) -> float:
-        """Time from call to call (s)."""
+        """Time from one call of this object by the simulation to the next (s)."""
         return self.skier.period
 
     def __call__(self, moment: Moment) -> Any:
-        """Target of the boots at the end of the moment."""
+        """Target positions of the boots at the end of a time step of the simulation."""
         control, usual = self.skier.controller, self.skier.skier
         if isinstance(control, SkidControl):
             control.skier = replace(usual, brakes_to=usual.brakes_to * self.line.speed_at(float(moment.position[0])))
@@ -180,7 +180,7 @@ class LineSkier:
 
 
 def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None = None) -> Run:
-    """The run of a scenario's skier on a line, through the line's gates.
+    """Simulate a scenario's skier on a racing line; returns the run, with the line's gates as its course.
 
     scenario: with a skier; its course is ignored.
     """
@@ -199,7 +199,7 @@ def run_score(run: Run) -> Score:
 
 @dataclass(frozen=True, slots=True)
 class LinePoint:
-    """Input of a worker: the line, and the position in the unit cube that it came from."""
+    """Input of a worker: a line, and the place in the unit cube of the search from which its numbers follow."""
 
     line: RacingLine
     place: tuple[float, ...]
@@ -207,9 +207,9 @@ class LinePoint:
 
 @dataclass(frozen=True, slots=True)
 class Racer:
-    """Function from a point of the search to its row; for worker processes.
+    """Callable for worker processes that races a `LinePoint` and returns the row of its result.
 
-    scenario: with course and skier.
+    scenario: scenario with course and skier.
     model: "skier": a whole simulated run; "point": a mass on the line.
     room: distance (m) from each pole, below which a gate counts as not passed.
     """
@@ -219,7 +219,7 @@ class Racer:
     room: float = 0.0
 
     def score(self, line: RacingLine) -> Score:
-        """Score of a line."""
+        """Score of a race on a line by the chosen model, with the room that each pole must have."""
         if self.model == "point":
             raced = PointRacer.of(self.scenario).score(line)
         else:
@@ -227,18 +227,18 @@ class Racer:
         return with_room(raced, self.room)
 
     def __call__(self, point: LinePoint) -> dict[str, Any]:
-        """The score with the place and the numbers of all turns."""
+        """Row of a point: the fields of its score, its place, and the numbers of all turns."""
         score = asdict(self.score(point.line))
         return {"place": list(point.place), **score, "turns": [list(astuple(turn)) for turn in point.line.turns]}
 
 
 def score_in(row: dict[str, Any]) -> Score:
-    """The score of a row."""
+    """Score in a row that a `Racer` returned."""
     values = {field.name: row[field.name] for field in fields(Score)}
     gates = tuple((outcome, time) for outcome, time in row["gates"])
     return Score(**values | {"gates": gates, "margins": tuple(row["margins"])})
 
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:
-    """Turns of the line whose evaluation is this row."""
+    """Turns of the raced line in a row that a `Racer` returned."""
     return tuple(LineTurn(**dict(zip(NUMBERS, numbers, strict=True))) for numbers in row["turns"])

@@ -33,9 +33,9 @@ class QuickestLine(Shown):
     model
         Racer: "skier" or "point".
     line, score
-        The best, and its time as the search computed it.
+        Quickest line, and its score as the search computed it.
     start, start_score
-        Start of the search and its time; default: `skisnow.racing.follower_line`.
+        Line at the start of the search, and its score; default: `skisnow.racing.follower_line`.
     history
         Every evaluation.
     seed
@@ -100,13 +100,13 @@ def quickest_line(
     scenario
         With a course and a skier. The search computes it as it is: give ``method="fast"`` for half of the work.
     gates
-        Only the first of the course, 2 or more; None: all.
+        Number of gates to race through, the first of the course, 2 or more; None: all.
     model
         "skier": each evaluation is a simulated run; "point": a mass on the line, on a plane, 5 ms each.
     start
         Start of the search; None: the skier's own line.
     evaluations
-        After which no new batch begins; of each window. 1: only the line where it begins, which needs no cmaes.
+        Number, for each window, after which no new batch begins. 1: only the start line, which needs no cmaes.
     search
         "surrogate": a Gaussian process of the evaluations so far chooses the next four; where all turns begin alike it
         varies them alike at first. "cma": only CMA-ES, for very cheap evaluations. None: "surrogate" for the skier,
@@ -116,15 +116,15 @@ def quickest_line(
     spread
         Standard deviation of the first batch over the range of each number, above 0 to 1.
     settled
-        Ends a search before its evaluations are used up: where all values of its last batch lie within so much (s),
-        with the surrogate where three batches in a row have not lowered the least value by so much.
+        Tolerance (s) that ends a search early: with CMA-ES if the values of a batch differ by less, with the surrogate
+        if three batches in a row lower the smallest value by less.
     window, step
         Number of gates whose turns are searched at once; the turns before them stay as found, then the window moves by
         `step` gates; None: all at once. The whole course is searched first, with equal turns if they begin equal: turns
         outside all windows keep that result. If no line of a window passes, the window before is searched again.
     ahead
-        Gates behind a window that its evaluations race through as well, by the turns that are there: too fast a way to
-        the window's last gate fails at them, or is slow.
+        Number of gates behind a window that its evaluations race through as well, by the turns so far: a line that is
+        too fast at the window's last gate fails at them, or is slow.
     room
         Smallest distance (m) of both skis from each pole, 0 to 1; a line that passes nearer fails. A smaller distance
         may become a straddle with another solver.

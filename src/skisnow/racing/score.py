@@ -23,10 +23,10 @@ class Score(ShownFields):
 
     value: Value to minimise: the time (s) if all gates are passed; else above 1000, and larger with the number of
         missed gates, the distances from them, and the distance of the end from the last gate.
-    time: From the start to the last gate (s); None where it fails.
-    passed: Gates.
-    words: How it ended.
-    gates: Result at each gate and the time from the start (s), None where it was not crossed.
+    time: Time from the start to the last gate (s); None for a failed race.
+    passed: Number of passed gates.
+    words: How the race ended.
+    gates: Result at each gate, and the time from the start (s), None for a gate that was not crossed.
     margins: Margin at each gate: distance from the nearest pole (m); below 0 if the gate was not passed. None where it
         was not crossed.
     """
@@ -40,12 +40,12 @@ class Score(ShownFields):
 
 
 def score_of(result: CourseResult | None, end: tuple[float, float], *, finished: bool, words: str) -> Score:
-    """Score from the passage of the gates.
+    """Score of a run from the passage of its gates.
 
-    result: None: there are not even two places.
-    end: x, y (m) where it ended.
-    finished: whether it came through, by its own account.
-    words: how it ended.
+    result: passages of the gates; None for a run with fewer than two places.
+    end: x, y (m) of the end of the run.
+    finished: False for a run that ended early, such as by a fall.
+    words: how the run ended.
     """
     if result is None:
         return Score(value=float("inf"), time=None, passed=0, words=words)

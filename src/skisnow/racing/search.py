@@ -26,9 +26,9 @@ FAILED: Final = 1e6
 class Evaluated:
     """Result of one evaluation: its number, place in the unit cube, and row.
 
-    number: in the order of the search, 0 or more.
-    place: in the unit cube (n,).
-    row: result of the function; `value` is minimised.
+    number: number in the order of the search, 0 or more.
+    place: place of the evaluated point in the unit cube (n,).
+    row: result of the evaluated function; its `value` is minimised.
     """
 
     number: int
@@ -45,8 +45,8 @@ class Evaluated:
 class Evaluations:
     """Evaluates batches of points in several processes and stores the results.
 
-    pool: computes rows of points (frozen numbers, place).
-    kept: finished rows; each contains its point.
+    pool: workers that compute the row of each point.
+    kept: finished rows by number; each contains the place of its point.
     done: all evaluations, in their order.
     """
 
@@ -55,7 +55,10 @@ class Evaluations:
     done: list[Evaluated]
 
     def of(self, candidates: Sequence[tuple[Any, FloatArray]]) -> Iterator[int]:
-        """Evaluate pairs of point and place; yields the number of finished ones, and appends the results to `done`."""
+        """Evaluate pairs of the function's input and its place; append the results to `done`.
+
+        Yields the number of finished pairs from time to time.
+        """
         first = len(self.done)
         points = {first + i: point for i, (point, _) in enumerate(candidates)}
         missing = [(number, point) for number, point in points.items() if number not in self.kept]
@@ -77,8 +80,8 @@ class Evaluations:
 class Batches:
     """Evaluations of one search, batch by batch.
 
-    point_of: input of the function for a point.
-    told: called as evaluations come.
+    point_of: function from a place in the unit cube to the input of the evaluated function.
+    told: callback with the number of evaluations so far and the smallest value among them.
     first: number of the search's first evaluation.
     """
 
@@ -89,12 +92,12 @@ class Batches:
 
     @property
     def found(self) -> list[Evaluated]:
-        """Results so far."""
+        """Evaluations of this search so far."""
         return self.evaluations.done[self.first :]
 
     @property
     def least(self) -> Evaluated:
-        """The first minimum so far."""
+        """Evaluation with the smallest value so far; the first of equal ones."""
         return min(self.found, key=lambda evaluation: _finite_or_failed(evaluation.value))
 
     def evaluate(self, batch: Sequence[FloatArray]) -> None:
@@ -104,7 +107,7 @@ class Batches:
 
 
 def require_cmaes() -> Any:
-    """The package of the search."""
+    """Import the package cmaes; an error states how to install it."""
     return import_extra("cmaes", extra="racing", what=Message("A race"))
 
 
@@ -118,7 +121,7 @@ def minimise(
     seed: Sequence[int],
     settled: float = 0.0,
 ) -> Evaluated:
-    """Minimise over the unit cube with about `count` evaluations, the first of them at the start.
+    """Best evaluation of a search by CMA-ES in the unit cube with about `count` evaluations, the first at the start.
 
     start: first point, (n,).
     count: evaluations after which no new batch begins.
@@ -148,7 +151,7 @@ def minimise(
 def optimiser_within(
     limits: FloatArray, mean: FloatArray, spread: float, seed: Sequence[int], *, population: int | None = None
 ) -> Any:
-    """CMA-ES within limits (n, 2) from a mean (n,) and a deviation on, seeded."""
+    """Seeded optimiser CMA-ES within limits (n, 2), with the mean (n,) and standard deviation of its first batch."""
     state = int(np.random.SeedSequence(list(seed)).generate_state(1)[0])
     return require_cmaes().CMA(mean=mean, sigma=spread, bounds=limits, seed=state, population_size=population)
 

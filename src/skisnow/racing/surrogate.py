@@ -32,12 +32,12 @@ _UNIT: Final = 0.5 * math.log(2.0 * math.pi)
 
 @dataclass(frozen=True, slots=True)
 class Surrogate:
-    """A Gaussian process of Matérn's kernel 5/2.
+    """Gaussian process with Matérn's kernel 5/2 that predicts values, such as times, at places in the unit cube.
 
-    places: (n, d) in the unit cube.
-    lengths: (d,) of the kernel.
-    level, scale: mean and deviation of the values: of one kind, or (q,) of kinds that have lengths and noise together.
-    noise: deviation of one value, over `scale`.
+    places: places of the evaluations, shape (n, d).
+    lengths: correlation lengths of the kernel, shape (d,).
+    level, scale: mean and standard deviation of the values: a number, or (q,) for q values with shared lengths.
+    noise: standard deviation of one value, divided by `scale`.
 
     * Jones, Schonlau and Welch (1998), "Efficient global optimization of expensive black-box functions", Journal of
       Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.
@@ -53,11 +53,11 @@ class Surrogate:
 
     @classmethod
     def of(cls, places: FloatArray, values: FloatArray, kinds: int) -> Surrogate:
-        """Surrogate of maximum likelihood, whose length scales are equal for each `kinds`-th number.
+        """Fit a process by maximum likelihood; each `kinds`-th number of a place has the same correlation length.
 
-        places: (n, d), n 2 or more.
-        values: (n,) or (n, q), finite.
-        kinds: divides d.
+        places: places of the evaluations, shape (n, d), n 2 or more.
+        values: finite values, shape (n,) or (n, q).
+        kinds: how many numbers each turn has; d is a multiple of it.
         """
         level, scale = values.mean(axis=0), np.asarray(values.std(axis=0))
         scale = np.where(scale > 0.0, scale, 1.0)
@@ -91,7 +91,7 @@ class Surrogate:
         return cls(places, lengths, level, scale, noise, factor, cho_solve(factor, standard))
 
     def at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Mean and standard deviation, (m,) or (m, q), at points (m, d)."""
+        """Predicted mean and standard deviation of the values, (m,) or (m, q), at places (m, d)."""
         kernel = _kernel(places, self.places, self.lengths)
         mean = self.level + self.scale * (kernel @ self._weights)
         left = 1.0 - np.sum(kernel * cho_solve(self._factor, kernel.T).T, axis=1)
@@ -110,7 +110,7 @@ class Surrogate:
 
 
 def _factorise_kernel(places: FloatArray, lengths: FloatArray, noise: float) -> tuple[FloatArray, bool]:
-    """Cholesky factor of the kernel matrix with noise, and True for a lower one, as SciPy's `cho_factor`."""
+    """Cholesky factor (n, n) of the kernel matrix with noise, and True: a lower triangle, as SciPy's `cho_factor`."""
     kernel = _kernel(places, places, lengths)
     kernel[np.diag_indices(len(places))] += noise**2 + SMALLEST
     factor, low = cho_factor(kernel, lower=True)
@@ -127,10 +127,11 @@ def _kernel(first: FloatArray, second: FloatArray, lengths: FloatArray) -> Float
 
 @dataclass(frozen=True, slots=True)
 class Prospects:
-    """Two processes: the time at the last gate, failures included, and the margins, which must all be above 0.
+    """Predictions for lines that are not evaluated yet, by two Gaussian processes.
 
-    time, margins: `margins` is None if no failure is known.
-    least: distribution of the times that the process expects where a race came through (s).
+    time: process of the time at the last gate (s), also of failed races.
+    margins: process of the margins (m), which must all be above 0; None if no margin is 0 or below.
+    least: smallest predicted time (s) of the evaluated lines that pass all gates.
 
     * Gardner and others (2014), "Bayesian optimization with inequality constraints", Proceedings of Machine Learning
       Research 32(2), 937-945.
@@ -144,7 +145,7 @@ class Prospects:
 
     @classmethod
     def of(cls, evaluations: Sequence[Evaluated], kinds: int) -> Prospects:
-        """Prospects from two or more evaluations, whose points have `kinds` numbers for each turn."""
+        """Fit the processes to two or more evaluations, whose places have `kinds` numbers for each turn."""
         places = np.array([evaluation.place for evaluation in evaluations])
         times, margins = times_of(evaluations), margins_of(evaluations)
         time = Surrogate.of(places, times, kinds)
@@ -163,7 +164,7 @@ class Prospects:
         return np.asarray(np.sum(log_ndtr(mean / scatter), axis=1))
 
     def worth(self, places: FloatArray, curiosity: float = 1.0, caution: float = 1.0) -> FloatArray:
-        """Logarithm of the expected time (s) by which points (m, d) are quicker than the best so far.
+        """Logarithm of the expected improvement (s) on `least` at places (m, d), weighted with the chance to pass.
 
         `curiosity` multiplies the standard deviation of the time: near 0 only the mean counts; `caution` is the
         exponent of the probability of passing all gates.
@@ -187,7 +188,7 @@ def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
 
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
-    """Times (n,) (s) at the last gate, with an upper limit, which runs that never come there get as well."""
+    """Times (n,) (s) at the last gate, limited to an upper value, which races that do not reach it also get."""
     times = np.array([_time_at_last_gate(evaluation) for evaluation in evaluations])
     finite = np.isfinite(times)
     if not finite.any():
@@ -217,7 +218,7 @@ def _time_at_last_gate(evaluation: Evaluated) -> float:
 
 
 def _log_improvement(hope: FloatArray) -> FloatArray:
-    """Logarithm of φ(z) + z Φ(z), also far below 0."""
+    """Logarithm of φ(z) + z Φ(z), the expected improvement in standard deviations, also for z far below 0."""
     above, near = np.maximum(hope, 0.0), np.clip(hope, -10.0, 0.0)
     density = -0.5 * near**2 - _UNIT
     below = density + np.log1p(near * np.exp(log_ndtr(near) - density))
@@ -268,8 +269,8 @@ BATCH: Final = (
 class SurrogateSearch:
     """Search by a surrogate model: its settings and evaluations.
 
-    count: evaluations after which no new batch begins.
-    kinds: numbers of a turn.
+    count: number of evaluations after which no new batch begins.
+    kinds: how many numbers each turn has.
     spread: half width of the first box in shares of each range, at most 0.25; twice as much for equal turns.
     settled: above 0: the search ends when three batches in a row have not lowered the minimum by this much.
     """
@@ -282,7 +283,7 @@ class SurrogateSearch:
     settled: float = 0.0
 
     def least(self, start: FloatArray, *, alike: bool = True) -> Evaluated:
-        """Minimum; with `alike` and equal turns in `start`, first over equal turns, then over each turn separately.
+        """Best evaluation; if `alike` and all turns of `start` are equal, equal turns are searched first, then each.
 
         * Jones, Schonlau and Welch (1998), "Efficient global optimization of expensive black-box functions", Journal of
           Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.
@@ -297,24 +298,24 @@ class SurrogateSearch:
         return self.batches.least
 
     def minimise_equal_turns(self, start: FloatArray, count: int) -> Evaluated:
-        """Minimum of about `count` evaluations in which all turns have the same numbers, as at the start."""
+        """Best of about `count` evaluations of lines whose turns all have the same numbers, as those of the start."""
         directions = np.tile(np.eye(self.kinds), (len(start) // self.kinds, 1))
         self.batches.evaluate([np.asarray(start, float)])
         self._search_along(directions, self.first_of(self.kinds), count, 0)
         return self.batches.least
 
     def starts_with_equal_turns(self, start: FloatArray) -> bool:
-        """True if several turns have the same numbers."""
+        """True if there are several turns, which all have the same numbers."""
         turns = len(start) // self.kinds
         return turns > 1 and np.array_equal(np.tile(start[: self.kinds], turns), start)
 
     @staticmethod
     def first_of(numbers: int) -> int:
-        """Evaluations before the surrogate is used."""
+        """Number of evaluations before the surrogate is used, in a search over so many numbers."""
         return 2 * numbers + 2
 
     def _search_along(self, directions: FloatArray, drawn: int, count: int, phase: int) -> None:
-        """Search from the best point along the m columns of `directions` (n, m); no new batch after `count`."""
+        """Evaluate `drawn` random places, then batches, along the columns of `directions` (n, m), until `count`."""
         box, size = min(2.0 * self.spread, BOX[1]) / (1 + phase), directions.shape[1]
         shares = qmc.LatinHypercube(size, rng=np.random.default_rng([*self.seed, phase])).random(drawn)
         begin = self._steps_along(directions, np.array(self.batches.least.place))
@@ -333,7 +334,7 @@ class SurrogateSearch:
                 return
 
     def _chosen(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
-        """A batch; for each point the earlier points of the batch count with their predicted values."""
+        """Places of the next batch; each is chosen as if the earlier ones had been evaluated as predicted."""
         evaluations = self.batches.found
         prospects = Prospects.of(evaluations, self.kinds)
         centre = self._steps_along(directions, np.array(self._centre(prospects).place))
@@ -351,7 +352,7 @@ class SurrogateSearch:
         return chosen
 
     def _centre(self, prospects: Prospects) -> Evaluated:
-        """The line that passes all gates and is expected to be the fastest, else the one with the smallest failure."""
+        """Evaluation that passes all gates with the smallest predicted time; without one, that with the least value."""
         evaluations = self.batches.found
         passed = passed_of(evaluations)
         if not passed.any():
@@ -361,7 +362,7 @@ class SurrogateSearch:
 
     @staticmethod
     def _steps_along(directions: FloatArray, place: FloatArray) -> FloatArray:
-        """Coordinates along the directions that reach a place, or come nearest to it (least squares)."""
+        """Coordinates (m,) along the directions (n, m) of a place (n,), or of the nearest one (least squares)."""
         return np.asarray(np.linalg.lstsq(directions, place)[0], np.float64)
 
 
@@ -369,7 +370,7 @@ def _best_within(
     prospects: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: PointChoice,
     seed: Sequence[int],
 ) -> FloatArray:  # fmt: skip
-    """Point of the largest prospect within a box about the centre and the unit cube (m,)."""
+    """Coordinates (m,) along the directions with the largest `Prospects.worth`, within a box about the centre."""
     limits = np.stack([np.maximum(centre - box, 0.0), np.minimum(centre + box, 1.0)], axis=1)
     optimiser = optimiser_within(limits, np.clip(centre, *limits.T), 0.4 * box, seed)
     best, most = centre, -math.inf

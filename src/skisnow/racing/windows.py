@@ -29,9 +29,10 @@ _LOW: Final = np.array([low for low, _ in RANGES.values()])
 class Windows:
     """Search over a course, window by window.
 
+    made: evaluations so far, to which the search appends.
     search, evaluations, population, spread, settled, seed, window, step, ahead: arguments of `quickest_line`.
-    tell: called with a line of text now and then.
-    kinds: numbers of each turn that are searched, the first ones of `RANGES`.
+    tell: callback for lines on the progress.
+    kinds: how many numbers of each turn are searched, the first ones of `RANGES`.
     """
 
     made: Evaluations
@@ -48,7 +49,7 @@ class Windows:
     kinds: int
 
     def search_line(self, begun: RacingLine) -> Evaluated:
-        """The best line through all gates, the first evaluation at where it begins."""
+        """Evaluation of the best line through all gates; the first evaluation is that of the start line `begun`."""
         count = len(begun.turns)
         if self.window == count:
             return self._part(begun, 0, count, count)
@@ -71,7 +72,7 @@ class Windows:
                 first = max(0, first - self.step)
 
     def _search_whole_course(self, begun: RacingLine) -> Evaluated:
-        """Best line of a search with equal turns over the whole course; the start itself if its turns differ."""
+        """Best evaluation of a search with equal turns over the whole course; that of the start if its turns differ."""
         batches = self._make_batches(begun, 0, len(begun.turns), len(begun.turns))
         search, place = self._surrogate(batches, 0), self._place(begun, 0, len(begun.turns))
         if self.search == "surrogate" and search.starts_with_equal_turns(place):
@@ -80,7 +81,7 @@ class Windows:
         return batches.least
 
     def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
-        """Minimum over the turns from one gate to before another; the race ends at `end`."""
+        """Best evaluation of a search over the turns `first` to `last` - 1 of a line; the race ends at gate `end`."""
         batches, place = self._make_batches(line, first, last, end), self._place(line, first, last)
         if self.search == "cma" or self.evaluations == 1:
             return minimise(
@@ -90,7 +91,7 @@ class Windows:
         return self._surrogate(batches, first).least(place, alike=self.window == len(line.turns))
 
     def _surrogate(self, batches: Batches, first: int) -> SurrogateSearch:
-        """Search with a surrogate of the turns from gate ``first``, whose number also varies the seed."""
+        """Search by a surrogate model, over the turns from gate `first` on; the seed depends on this gate."""
         return SurrogateSearch(
             batches=batches, count=self.evaluations, kinds=self.kinds, spread=self.spread, seed=(self.seed, first),
             settled=self.settled,
@@ -112,12 +113,12 @@ class Windows:
         return Batches(evaluations=self.made, point_of=point_of, told=told, first=len(self.made.done))
 
     def _place(self, line: RacingLine, first: int, last: int) -> FloatArray:
-        """Point in the unit cube of the turns of a line from one gate to before another."""
+        """Place in the unit cube of the turns `first` to `last` - 1 of a line: the searched numbers of each turn."""
         numbers = np.array([[getattr(turn, name) for name in RANGES] for turn in line.turns[first:last]])
         return np.clip((numbers - _LOW) / _WIDTH, 0.0, 1.0)[:, : self.kinds].ravel()
 
 
 def _with_best_turns(line: RacingLine, evaluation: Evaluated) -> RacingLine:
-    """The line with its first turns replaced by those of an evaluated point of the search."""
+    """A line with its first turns replaced by those of an evaluated line, which may have fewer turns."""
     turns = turns_in(evaluation.row)
     return RacingLine(line.course, line.start, (*turns, *line.turns[len(turns) :]))

@@ -40,7 +40,7 @@ class Worth(Shown):
     """Times of one variant and of the scenario itself on the same snows.
 
     name: Name of the variant.
-    scores, base: One for each snow, the first the scenario's own; `base`: of the scenario as it is.
+    scores, base: Scores of the variant, and of the scenario itself, one for each snow, the scenario's own first.
     """
 
     name: str
@@ -49,19 +49,19 @@ class Worth(Shown):
 
     @property
     def differences(self) -> FloatArray:
-        """Its time less that of the scenario as it is (s), of each snow on which both came through; below 0: faster."""
+        """Time of the variant minus that of the scenario (s), for each snow on which both pass all gates."""
         pairs = zip(self.scores, self.base, strict=True)
         return np.array([a.time - b.time for a, b in pairs if a.time is not None and b.time is not None])
 
     @property
     def on_own_snow(self) -> float | None:
-        """The difference on the scenario's own snow (s); None where one of them fails there."""
+        """Time of the variant minus that of the scenario on the scenario's own snow (s); None if one of them fails."""
         first, base = self.scores[0].time, self.base[0].time
         return None if first is None or base is None else first - base
 
     @property
     def mean(self) -> float | None:
-        """Mean of the differences (s)."""
+        """Mean of the differences over the snows (s); None without one."""
         differences = self.differences
         return float(differences.mean()) if len(differences) else None
 
@@ -82,7 +82,7 @@ class Worth(Shown):
 
     @property
     def verdict(self) -> str:
-        """Verdict whether the variant is faster here: certain only if the whole interval is on one side of 0."""
+        """Word `faster` or `slower` if the whole interval is on one side of 0, otherwise `undecided`."""
         low, high = self.interval or (-math.inf, math.inf)
         return "faster" if high < 0.0 else "slower" if low > 0.0 else "undecided"
 
@@ -92,7 +92,7 @@ class Worth(Shown):
         return int(np.sum(self.differences < 0.0))
 
     def gaps(self, names: Sequence[str]) -> tuple[GateGap, ...]:
-        """Time gap to the scenario at each gate, by the gates' names, on the scenario's own snow."""
+        """Time gap of the variant to the scenario at each gate, on the scenario's own snow; `names` of the gates."""
         own, base = (
             [
                 {"gate": name, "outcome": outcome, "time_s": time}
@@ -126,13 +126,13 @@ def compare_variants(
 ) -> tuple[Worth, ...]:
     """Race a scenario and variants of it on one line, on the same snows.
 
-    scenario: As it is.
+    scenario: Scenario that each variant is compared with.
     others: Variants by name; a change of the snow applies to each snow.
-    line: That all of them take.
-    snows: The scenario's own first, as `drawn_for_race` gives them. The skier assumes the scenario's own in skidded
-        turns.
-    start: Line that the scenario as it is races on too, as the first of the results.
-    model, workers, executor, checkpoint, progress: As of `quickest_line`.
+    line: Line on which all of them are raced.
+    snows: Snows, the scenario's own first, as from `drawn_for_race`. In skidded turns the skier assumes the scenario's
+        own.
+    start: Another line for the unchanged scenario, compared as the first of the results (default: none).
+    model, workers, executor, checkpoint, progress: As in `quickest_line`.
     Raises ParameterError: there is no snow or no variant, or the checkpoint belongs to another comparison.
     """
     require_choice("model", model, get_args(RacerModel))
@@ -168,7 +168,7 @@ def compare_variants(
 
 
 def _race(point: tuple[Scenario, RacingLine], model: RacerModel) -> dict[str, Any]:
-    """Row of the race of a scenario on a line."""
+    """Race a scenario on a line; returns the row of its `Racer`."""
     scenario, line = point
     return Racer(scenario, model)(LinePoint(line, ()))
 
@@ -176,10 +176,10 @@ def _race(point: tuple[Scenario, RacingLine], model: RacerModel) -> dict[str, An
 def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
     """A snow, and `count` snows drawn from the uncertainty of its values: a Latin hypercube over H_V and S_f.
 
-    snow: With intervals of H_V and S_f, or without.
-    count: Of drawn snows; 0: none.
-    spread: Without an interval 95 % lie between the value over 1 + spread and its 1 + spread fold.
-    seed: 0 or more.
+    snow: Snow with or without intervals of H_V and S_f.
+    count: Number of drawn snows; 0: none.
+    spread: Instead of the snow's intervals: 95 % of the values are from value/(1 + spread) to value·(1 + spread).
+    seed: Seed of the random numbers, 0 or more.
     Raises ParameterError: an interval is not known and no spread is given.
     """
     if count == 0:
@@ -196,7 +196,7 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
 
 
 def worth_changes(scenario: Scenario) -> dict[str, Scenario]:
-    """Usual changes, by name: harder and stronger snow, a wider waist, a stiffer ski, less friction."""
+    """Variants of a scenario by name, each with one change: harder or stronger snow, wider or stiffer ski, friction."""
     snow, contact = scenario.contact.snow, scenario.contact
     strength = snow.failure_shear_stress
     harder = replace(snow, snow_hardness=1.1 * snow.snow_hardness, snow_hardness_interval=None)
@@ -213,13 +213,13 @@ def worth_changes(scenario: Scenario) -> dict[str, Scenario]:
 
 
 def wider(ski: Ski, more: float) -> Ski:
-    """A ski with a waist wider by this width (m); the change falls to 0 at the ends of the sidecut."""
+    """Copy of a ski whose waist is wider by `more` (m); the change falls to 0 at the ends of the sidecut."""
     along = np.clip((ski.station - ski.sidecut_middle) / (0.5 * ski.sidecut_length), -1.0, 1.0)
     return replace(ski, name=f"{ski.name}, waist {more * 1e3:+g} mm", width=ski.width + more * (1.0 - along**2))
 
 
 def _on_snow(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
-    """Variant on another snow; its ratios of H_V and S_f to those of the base stay."""
+    """Variant on another snow, multiplied by the variant's ratios of H_V and S_f to those of the base scenario."""
     own, its = base.contact.snow, variant.contact.snow
     share = its.snow_hardness / own.snow_hardness
     stress = None
