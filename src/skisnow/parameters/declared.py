@@ -35,15 +35,15 @@ T = TypeVar("T")
 
 
 def _nothing(_: Any) -> None:
-    """No word for a value."""
+    """Default of `Word.word_of`: None, as no word describes the value of the field."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word(Quantity):
-    """Text of a file for a field, such as a name, which the reader of the file interprets.
+    """Quantity whose value in a file is a text, such as a name, which the reader of the file interprets.
 
-    word_of: the word for a value of the field.
-    names_file: whether it is the path of a file.
+    word_of: function from a value of the field to its text in a file.
+    names_file: True if the text is the path of a file.
     """
 
     kind: Kind = "text"
@@ -53,7 +53,7 @@ class Word(Quantity):
 
 
 class Section(NamedTuple):
-    """File section for the quantities of a nested dataclass; `otherwise`: a single word may replace the section."""
+    """Section of a file with the quantities of a nested dataclass; `otherwise`: True if a word may replace it."""
 
     name: str
     otherwise: bool = False
@@ -64,7 +64,7 @@ APART: Final = "apart"
 
 
 class _Slot(NamedTuple):
-    """A field and its annotation: its own quantities, and the dataclasses that it may contain."""
+    """A field of a dataclass with its annotation: its quantities, the nested dataclasses `parts`, and their section."""
 
     field: Field[Any]
     own: tuple[Quantity, ...]
@@ -74,7 +74,7 @@ class _Slot(NamedTuple):
 
 
 def own_quantities(owner: type) -> tuple[Quantity, ...]:
-    """The quantities of a dataclass's own fields, in their order."""
+    """Quantities that a dataclass declares for its own fields, without those of nested dataclasses, in their order."""
     return tuple(quantity for slot in _slots_of(owner) for quantity in slot.own)
 
 
@@ -119,9 +119,9 @@ def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
 def build_declared(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
     """Build a dataclass and its nested dataclasses from values by name, in the units of the names.
 
-    values: values in their ranges; None and missing ones leave the default.
-    section: section for names without one.
-    parts: other fields, in SI; they go before.
+    values: values that are within their ranges; a missing one or None gives the default.
+    section: section that is put before names without one.
+    parts: values of fields in SI, which override `values`.
     """
     several: dict[str, list[tuple[int, Any]]] = {}
     for quantity in own_quantities(owner):
@@ -175,13 +175,13 @@ def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") 
 
 
 def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
-    """True if the new value of another key leaves a quantity without effect."""
+    """True if new values by name violate a quantity's condition, so that it has no effect."""
     condition = quantity.condition
     return condition is not None and condition.key in values and not condition.holds(values[condition.key])
 
 
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
-    """Values of a dataclass and of nested ones, by name, in the units of the names."""
+    """Values of all quantities of a dataclass and of nested ones, by name, in the units of the names."""
     values: dict[str, Any] = {}
     for slot in _slots_of(type(thing)):
         value = getattr(thing, slot.field.name)
@@ -200,7 +200,7 @@ _WIDEST: Final = 160
 
 
 class Declared:
-    """Base of a dataclass of quantities, which its constructor checks and its text names with their units.
+    """Base class of dataclasses with declared quantities: the constructor checks them, the repr lists them with units.
 
     >>> @dataclass(frozen=True, repr=False)
     ... class Step(Declared):
@@ -285,7 +285,7 @@ def _make_slot(owner: type, field: Field[Any]) -> _Slot:
 
 
 def _fields_of_marks(marks: tuple[Any, ...]) -> dict[str, Any]:
-    """Fields of a `Quantity` from the other marks of its annotation."""
+    """Fields of a `Quantity` by name from `Label`, `Allowed`, `Condition` and `Search` in its annotation."""
     details: dict[str, Any] = {}
     for mark in marks:
         if isinstance(mark, Label | Allowed):
@@ -312,7 +312,7 @@ def _union_members(hint: Any) -> tuple[Any, ...]:
 def _resolved(
     quantity: Quantity, marks: tuple[Any, ...], field: Field[Any], members: tuple[Any, ...], needed: bool
 ) -> Quantity:
-    """The quantity, completed from the further marks of its annotation and from its field: kind, choices, default."""
+    """Copy of a quantity, completed with range, label and more of its annotation, and kind and default of its field."""
     (type_,) = (member for member in members if member is not NoneType)
     choices = get_args(type_) if get_origin(type_) is Literal else ()
     kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
@@ -333,11 +333,11 @@ def _resolved(
 def checked_table(
     owner: type, table: Mapping[str, Any], place: str, *, further: Collection[str] = ()
 ) -> dict[str, Any]:
-    """The stated values of a table in their kinds and units.
+    """Checked values of a table of a file by key, without its `further` keys; an error for unknown or missing keys.
 
-    owner: the dataclass that declares the allowed values; `build_declared` makes one of the values.
+    owner: dataclass that declares the keys; `build_declared` makes one from the result.
     place: place of the table, for messages.
-    further: other keys that it may have; the caller reads them.
+    further: other allowed keys, which the caller reads.
     """
     keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:

@@ -16,7 +16,7 @@ _TYPES: Final = {"number": "number", "whole number": "integer", "text": "string"
 
 
 def schema_of(quantity: Quantity) -> Schema:
-    """The schema of one value.
+    """JSON Schema of the value of a quantity.
 
     >>> schema_of(Quantity("load_N", "load", lowest=0.0, above=True))
     {'type': 'number', 'description': 'load (N)', 'exclusiveMinimum': 0.0}
@@ -34,7 +34,7 @@ def schema_of(quantity: Quantity) -> Schema:
 
 
 def table_schema(quantities: Iterable[Quantity]) -> Schema:
-    """The schema of a table of a file: its keys, no others, and which of them are needed."""
+    """JSON Schema of a table of an input file: allowed keys with their values, and required keys."""
     listed = list(quantities)
     own = [quantity.name.rpartition(".")[2] for quantity in listed]
     needed = [name for name, quantity in zip(own, listed, strict=True) if quantity.needed]
@@ -47,9 +47,9 @@ def table_schema(quantities: Iterable[Quantity]) -> Schema:
 
 
 def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -> Schema:
-    """Schema of a table with the used value under every key; null if missing.
+    """JSON Schema of a table of an output file, with each key and its used value, or null for a key without one.
 
-    With `every_null` also a key that has a default, or must be given, may have none in force.
+    every_null: True if null is also allowed for keys that are required or have a default.
     """
     properties = {}
     for quantity in quantities:
@@ -62,7 +62,7 @@ def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -
 
 
 def schema_text(schema: Schema) -> str:
-    """A schema as it is in its file."""
+    """Text of a schema as JSON with indentation."""
     return json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
 
 

@@ -36,10 +36,11 @@ def beyond_reason(values: FloatArray) -> BoolArray:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """Search range of a quantity: size in its unit (of its logarithm if `logarithmic`), and usual bounds.
+    """Scale and default bounds for the identification of a quantity.
 
-    size: derivatives step by 1 to 5 % of it.
-    lower, upper: bounds where the user gives none; where `about` is set they count from the start of the search.
+    size: typical change, in the unit of the quantity or of its logarithm; derivatives step by 1 to 5 % of it.
+    lower, upper: default bounds; if `about` is True, they are added to the start of the search.
+    logarithmic: True if the logarithm of the quantity is searched.
     """
 
     size: float
@@ -50,7 +51,7 @@ class Search:
 
 
 class Allowed(NamedTuple):
-    """Allowed values of a quantity, next to it in the annotation of its field; see `Quantity`."""
+    """Allowed values of a quantity, a mark next to it in the annotation of a field; fields as those of `Quantity`."""
 
     lowest: float = -math.inf
     highest: float = math.inf
@@ -62,7 +63,7 @@ class Allowed(NamedTuple):
 
 
 class Label(NamedTuple):
-    """Short name of a quantity, and its symbol on the axis of a figure, next to it in the annotation of its field."""
+    """Short name and symbol of a quantity for the axes of figures, a mark next to it in the annotation of a field."""
 
     label: str
     symbol: str = ""
@@ -70,11 +71,11 @@ class Label(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Value of another key without which a quantity has no effect.
+    """Condition on another key without which a quantity has no effect.
 
     key: the other key.
-    value: the value that it needs.
-    differs: True if it needs any other value than this one.
+    value: required value of that key.
+    differs: True if every other value than this one is required.
     """
 
     key: str
@@ -82,7 +83,7 @@ class Condition:
     differs: bool = False
 
     def holds(self, actual: object) -> bool:
-        """True if a quantity with this condition has an effect."""
+        """True if the actual value of the other key meets the condition, so that the quantity has an effect."""
         return (actual == self.value) != self.differs
 
     @property
@@ -101,26 +102,25 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """One key of users, declared in the annotation of its field; see `declared`.
+    """Key of an input file or option, declared in the annotation of the field that holds its value; see `declared`.
 
-    name: with its unit, as users write it; a scenario's begins with its section.
-    meaning: in words.
-    lowest, highest: ends of the range in the unit of the name; `above` leaves the lowest value itself out, `below`
-        the highest.
-    infinite, blank: whether an infinite number has a meaning; whether a text may be blank.
-    origin: where the default or the range comes from.
-    example: form on the command line, with the meaning of its values.
-    label, symbol: short name, such as on the axis of a figure, and its symbol there.
+    name: key with its unit, as users write it; that of a scenario begins with its section.
+    meaning: explanation in words.
+    lowest, highest: ends of the range in the unit of the name; `above` and `below` exclude the lowest and the highest
+        value themselves.
+    infinite, blank: True if a number may be infinite; True if a text may be blank.
+    origin: source of the default or of the range.
+    example: example of the option on the command line, with the meaning of its values.
+    label, symbol: short name and symbol for the axes of figures.
     usual: ends of the usual range, in the unit of the name; None: all of the range.
-    search: how it is searched for; None: by the value that the search begins with.
-    index: index of the quantity, if the field contains several numbers.
-    needed: whether a value must be given, where the field has no default.
-    condition: without it the quantity has no effect, and any other value than the default is rejected (default:
-        none).
-    kind, choices, default, field: taken from the field: what its type allows, the words of a ``Literal``, the
-        default in the unit of the name (None without one), the field's name.
+    search: scale and bounds for identification; None: both follow from the start of the search.
+    index: index of the quantity in a field with several numbers.
+    needed: True if a value is required and the field has no default.
+    condition: condition without which any other value than the default is rejected (default: none).
+    kind, choices, default, field: completed from the field: its type, the words of a ``Literal``, the default in the
+        unit of the name (None without one), the name of the field.
 
-    The range of numbers is that of each.
+    The range of a list applies to each number.
     """
 
     name: str
@@ -196,7 +196,7 @@ class Quantity:
 
     @property
     def axis_label(self) -> str:
-        """Label, symbol and unit; the name where there is neither label nor symbol.
+        """Text of an axis: label, symbol and unit; the name without label and symbol.
 
         >>> Quantity("load_N", "force on the ski", label="load").axis_label
         'load (N)'
@@ -210,7 +210,7 @@ class Quantity:
         return low | (values >= self.highest if self.below else values > self.highest) | beyond_reason(values)
 
     def in_kind(self, value: object) -> InputValue:
-        """The value converted to the kind of the quantity, a number to float; its range is not checked."""
+        """Convert a value to the kind of the quantity, a number to float; the range is not checked."""
         if self.kind == "switch" and isinstance(value, bool):
             return value
         if self.kind == "text" and isinstance(value, str):
@@ -251,7 +251,7 @@ class Quantity:
             yield replace(self, kind="number", name=f"{self.name}[{place}]"), value
 
     def in_range(self, value: object) -> InputValue:
-        """The value converted to the kind of the quantity and checked against its range."""
+        """Convert a value to the kind of the quantity; an error if it is of another kind or outside the range."""
         checked = self.in_kind(value)
         if self.kind == "numbers" and isinstance(value, list | tuple) and not self._allows(checked):
             for one, element in self.single_quantities(value):
@@ -264,7 +264,7 @@ class Quantity:
 
     @property
     def _unit_of_field(self) -> float:
-        """Factor from the unit of the name to that of the field: 1 if the field has the whole name, else to SI."""
+        """Factor from the unit of the name to that of the field: 1 for a field of the same name, else that to SI."""
         return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
 
     def in_si(self, value: Any) -> Any:
@@ -288,7 +288,7 @@ class Quantity:
         return value / self._unit_of_field if self.kind == "number" and value is not None else value
 
     def require(self, value: object) -> None:
-        """Refuse a field's value, as Python gives it, that no file could give."""
+        """Raise an error for a field's value, in the field's unit, of a wrong kind or outside the range."""
         if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
             self.in_range([_plain(number, self._unit_of_field) for number in value])
         elif self.kind in ("number", "whole number"):
@@ -351,7 +351,7 @@ def _allowed_texts(choices: Sequence[str], blank: bool) -> Message:
 
 
 def _plain(value: object, factor: float) -> object:
-    """A number of any library in a unit, without the last digits that the unit's size leaves uncertain."""
+    """A number divided by the factor of a unit, rounded to 14 digits; any other value unchanged."""
     if isinstance(value, bool) or not isinstance(value, Real):
         return value
     number = float(value) / factor
