@@ -52,40 +52,40 @@ def turn(
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> TurnChain:
-    """From a campaign to a turn: its snow, the turn on it with two contacts, a band for the unknown inputs.
+    """Simulate a turn on the snow of a campaign with two contacts, and an ensemble of it over the uncertain inputs.
 
     Parameters
     ----------
     campaign
         A campaign, its folder, or its analysis.
     site
-        Whose snow it is; "C" is also the campaign's "site C". Default: all sites together.
+        Site whose snow is used; "C" is also the campaign's "site C". Default: all sites together.
     scenario
-        The turn: its snow is replaced by the one that was found. A built-in name, a file, or a scenario.
+        Scenario of the turn: a built-in name, a file, or a scenario. Its snow is replaced by that of the campaign.
     ski
         Ski instead of that of the scenario: a ski, a name of the catalogue, or a file.
     unloading_ratio
-        k_u/H_V > 1 of the hypoplastic contact; default: the measured one of the site, or 10 where none is. The other
+        k_u/H_V > 1 of the hypoplastic contact; default: that measured at the site, or 10 without one. The other
         contact is elastic.
     shear_displacement
-        u_y (m) > 0; default: the measured one of the site, or the scenario's own where none is.
+        u_y (m) > 0; default: that measured at the site, or the scenario's without one.
     priors
-        Further inputs of the band, which replace those with the same key. By default k_u/H_V and u_y are drawn from
-        their measured intervals if the site has them and neither is stated above; the others from
+        Further inputs of the ensemble, which replace those with the same key. By default k_u/H_V and u_y are drawn
+        from their measured intervals if the site has them and neither is stated above; the others from
         `skisnow.pipeline.PRIORS`.
     runs
         Number of runs of the ensemble, 3 or more.
     seed
-        Of those draws.
+        Seed of the random numbers of the ensemble.
     workers
-        Processes for the ensemble; None: one for each core.
+        Number of processes for the ensemble; None: one for each core.
     progress
-        Called with a line of text now and then.
+        Callback for lines of text on the progress.
 
     Returns
     -------
     TurnChain
-        With `TurnChain.report` for the page that shows it all.
+        Snow, runs and ensemble; `TurnChain.report` writes a page with all of it.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def turn(
 
 
 def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None) -> Analysis:
-    """The analysis of a campaign that has the site: a misspelt site is reported before the estimates."""
+    """Read and analyse a campaign; a site without penetration tests is an error before the long estimates."""
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     pressed = set(read.penetration.site) if read.penetration is not None else set()
     if site is not None and pressed and site_of_campaign(read, site) not in pressed:
@@ -219,10 +219,10 @@ OUTPUT: Final = 0.05
 
 
 def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Prior, ...]:
-    """Inputs of the band next to H_V and S_f, in the order of its columns.
+    """Uncertain inputs of the ensemble besides H_V and S_f, in the order of its columns.
 
-    Order of precedence: a stated prior, a measured interval of the snow, the usual prior. The rounding of the camber is
-    an input only for a ski with a camber as one number.
+    Order of precedence: a prior of the caller, a measured interval of the snow, the default prior. The rounding of the
+    camber is an input only for a ski with a camber as one number.
     """
     measured = {uncertain.key: uncertain for uncertain in measured_of(turn.contact.snow)}
     inputs = {prior.key: measured.get(prior.key, prior) for prior in PRIORS}
@@ -238,14 +238,14 @@ def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Pri
 
 
 def simulate_fast(scenario: Scenario) -> dict[str, Any]:
-    """Outcome, track and side-slip of a scenario, as JSON values: they may come back from another process."""
+    """Simulate a scenario by the fast method; returns outcome, track, share of time in side-slip, as JSON values."""
     run = simulate(scenario.with_(solver=replace(scenario.solver, method="fast", fixed=False, output_interval=OUTPUT)))
     time, x, y = (column.tolist() for column in (run.time, run.place[:, 0], run.place[:, 1]))
     return {"outcome": run.outcome, "track": [time, x, y], "slips": used_grip(run)[1]}
 
 
 def drawn_scenarios(nominal: Scenario, inputs: Sequence[Measured | Prior], count: int, seed: int) -> list[Scenario]:
-    """Scenarios drawn from the intervals of H_V and S_f and from further inputs: a Latin hypercube over all of them."""
+    """Draw `count` scenarios by a Latin hypercube over H_V, S_f and the further inputs; other values are nominal."""
     shares = latin_hypercube(count, 2 + len(inputs), np.random.default_rng(seed))
     snows = drawn_snows(nominal.contact.snow, shares[:, :2])
     own = values_of(nominal)
@@ -257,7 +257,7 @@ def drawn_scenarios(nominal: Scenario, inputs: Sequence[Measured | Prior], count
 
 
 def latin_hypercube(count: int, inputs: int, generator: np.random.Generator) -> Any:
-    """Shares (count, inputs): each of `count` equal slices of an input contains one, at a random place."""
+    """Random shares from 0 to 1, shape (count, inputs): each of `count` equal slices of an input contains one."""
     slices = generator.permuted(np.tile(np.arange(count), (inputs, 1)), axis=1).T
     return (slices + generator.random((count, inputs))) / count
 
@@ -266,7 +266,7 @@ def ensemble_of(
     nominal: Run, scenarios: Sequence[Scenario], inputs: Sequence[Measured | Prior], *, workers: int | None,
     progress: Callable[[str], None],
 ) -> tuple[list[EnsembleRun], float, tuple[str, ...]]:  # fmt: skip
-    """The runs of an ensemble; how far (m) the fast solver moves the nominal run's end; warnings of that run."""
+    """Runs of the ensemble, distance (m) by which the fast method moves the nominal run's end, and warnings of it."""
     nudged = {key: pair for key, pair in nudged_scenarios(nominal).items() if key in NUDGED}
     points = [nominal.scenario, *scenarios, *(scenario for nudges in nudged.values() for scenario in nudges)]
 
@@ -293,5 +293,5 @@ def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prio
 
 
 def _apart(row: Row, place: Sequence[Sequence[float]]) -> float:
-    """Distance (m) of a row's last place from the last of x and y."""
+    """Distance (m) of the end of a row's track from the last place of another track, given as x and y."""
     return float(np.hypot(*(column[-1] - other[-1] for column, other in zip(row["track"][1:], place, strict=True))))

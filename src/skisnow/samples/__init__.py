@@ -229,7 +229,7 @@ def write_samples(folder: str | Path, *, seed: int = 1) -> list[Path]:
 
 
 def _contents(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
-    """Each file outside the reference campaign, by its path in the folder."""
+    """Path in the folder and content of each sample file, without those of the reference campaign."""
     with as_file(files(__package__) / "files") as shipped:
         for path in sorted(path for path in shipped.rglob("*") if path.is_file()):
             yield path.relative_to(shipped).as_posix(), path.read_bytes()
@@ -293,7 +293,7 @@ def _track_gpx(run: Run, random: np.random.Generator) -> str:
 
 
 def _grooves(scenario: Scenario, random: np.random.Generator) -> str:
-    """CSV of the groove at eight places, with the depth that stays and the radius of a steady carve."""
+    """CSV of the groove that a scenario's ski leaves in a steady carve: depth, width and radius at eight places."""
     sledge, slope, contact = scenario.sledge, scenario.slope, scenario.contact
     assert isinstance(slope, Plane)
     load = (sledge.mass + 2.0 * scenario.ski.mass) * scenario.gravity * math.cos(slope.angle) / 2.0
