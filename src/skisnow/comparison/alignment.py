@@ -75,7 +75,7 @@ class Motion:
     rival: Motion | None = None
 
     def applied(self, line: Polyline) -> Polyline:
-        """The track after the motion."""
+        """The line moved by `moved` and rotated by `turned` about its first point; its times stay."""
         start = line.place[0]
         return polyline((line.place - start) @ _turn(self.turned, len(start)).T + start + self.moved, line.time)
 
@@ -173,7 +173,7 @@ def _same_direction(path: Path, places: FloatArray, motion: Motion) -> bool:
 
 
 def start_motions(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> list[Motion]:
-    """Motions from which a search begins."""
+    """First guesses of the motion, from which the Gauss–Newton steps of `fit_motion` begin."""
     lines = _chords(simulated), _chords(measured)
     overlap = LEAST_SHARE * min(line.length for line in lines)
     shifts = np.linspace(overlap - lines[1].length, lines[0].length - overlap, SHIFTS).tolist() if start else []

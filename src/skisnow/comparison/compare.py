@@ -167,6 +167,7 @@ def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[i
 
 
 def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[str, str], seen: str) -> Comparison:
+    """Comparison by all three distances; `seen`: whether heights are used, in words."""
     simulated, measured = lines
     apart = nearest_offsets(Path(simulated.place), measured)
     back = distance_statistics(nearest_offsets(Path(measured.place), simulated))
@@ -185,6 +186,7 @@ def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[
 
 
 def _make_distances(name: str, apart: OffsetSeries | None, otherwise: str, *, origin: str = "") -> Distances:
+    """Distances by the definition with this name; `otherwise` is the reason given if nothing can be compared."""
     numbers = None if apart is None else distance_statistics(apart)
     definition = DEFINITIONS[name].format(origin=origin)
     return Distances(definition, apart, numbers, None if numbers else otherwise)
@@ -201,6 +203,7 @@ def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Dis
 
 
 def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparison:
+    """Comparison after the offsets in `fit` are fitted; `plain` is the comparison without the fit."""
     simulated, motion = plain.simulated, Motion(np.zeros(plain.dimensions), 0.0)
     if fit & {"start", "heading"}:
         motion = fit_motion(simulated, plain.measured, start="start" in fit, heading="heading" in fit)

@@ -90,6 +90,7 @@ def mean_lengths(first: FloatArray, last: FloatArray) -> FloatArray:
 
 
 def _closed_form(first: FloatArray, direction: FloatArray, size: FloatArray) -> FloatArray:
+    """Mean length of vectors (n, d) that change by `size` (n,) along the unit vectors `direction`."""
     begins = (first * direction).sum(axis=1)
     across = np.linalg.norm(first - begins[:, None] * direction, axis=1)
     return (_area(begins + size, across) - _area(begins, across)) / size

@@ -116,7 +116,7 @@ class Path:
         return nearest
 
     def _search(self, points: FloatArray, numbers: IntArray, neighbours: int, nearest: IntArray) -> None:
-        """Write the nearest pieces of the points with these numbers, among this number of nodes or more."""
+        """Write the nearest piece of each point in `numbers` into `nearest`; searches `neighbours` or more nodes."""
         count = min(neighbours, self._tree.n)
         distance, node = (np.reshape(result, (-1, count)) for result in self._tree.query(points[numbers], k=count))
         piece = np.concatenate([self._before[node], self._after[node]], axis=1)
