@@ -15,14 +15,14 @@ HEADER: Final = "skisnow_contact.h"
 
 
 def c_library() -> Path:
-    """The shared library, for a linker or for ``dlopen``.
+    """Path of the shared library, for a linker or for ``dlopen``.
 
     Raises
     ------
     FileNotFoundError
-        The package was put together without it.
+        The installed package does not contain it.
     ImportError
-        In a checkout: it was built from other sources than those that lie there.
+        In a checkout: it was built from other sources than the checkout contains.
     """
     path = _first_existing(*(_FOLDER / name for name in NAMES))
     sources = ctypes.CDLL(os.fspath(path)).skisnow_contact_sources
@@ -32,12 +32,12 @@ def c_library() -> Path:
 
 
 def c_header() -> Path:
-    """Text of the C header of the library, which describes the arguments and results of each function.
+    """Path of the C header of the library, which describes the arguments and results of each function.
 
     Raises
     ------
     FileNotFoundError
-        The package was put together without it.
+        The installed package does not contain it.
     """
     return _first_existing(_FOLDER / HEADER, compiled.SOURCES / "bindings" / HEADER)
 

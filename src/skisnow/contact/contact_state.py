@@ -31,7 +31,7 @@ class ContactState(Shown):
 
     @classmethod
     def of(cls, contact: core.Contact) -> ContactState:
-        """As a compiled contact is now."""
+        """Present state of a compiled contact."""
         state = contact.state()
         return cls(state, None, lambda: contact.bytes_of(state))
 
@@ -51,7 +51,7 @@ class ContactState(Shown):
         return cls(None, bytes(data), None)
 
     def to_bytes(self) -> bytes:
-        """All of it, the tracks in its snow as well.
+        """Bytes of the whole state, with the tracks in its snow.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class ContactState(Shown):
         return self._kept
 
     def restore_in(self, contact: core.Contact) -> None:
-        """Take a compiled contact to this state; ValueError if it is of another contact."""
+        """Reset a compiled contact to this state; ValueError if the state is of another contact."""
         if self._compiled is not None:
             contact.restore(self._compiled)
         else:

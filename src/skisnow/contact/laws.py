@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Laws(Shown):
-    """Laws, each instead of a scenario's; ``None`` leaves the scenario's. Any class of yours may be one.
+    """Laws that replace those of a scenario; ``None`` keeps the scenario's. User-defined classes are allowed.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Laws(Shown):
 
     @property
     def described(self) -> dict[str, str | None]:
-        """Each law by its class and numbers, ``None`` where the scenario's acts."""
+        """Class and numbers of each law in words; ``None`` for a law of the scenario."""
         laws = {name: getattr(self, name) for name in ("friction", "shear", "penetration")}
         return {name: None if law is None else name_with_values(law) for name, law in laws.items()}
 
@@ -86,7 +86,7 @@ class StrengthCallback:
 
 
 class PressureCallback:
-    """Functions of a penetration law that the compiled core calls with arrays over places; values must be finite."""
+    """Functions of a penetration law, called by the compiled core with arrays over places; values must be finite."""
 
     def __init__(self, law: PointLaw) -> None:
         self.law = law
@@ -104,10 +104,11 @@ class PressureCallback:
         return self._require_finite(self.law.lost_energy(deepest), deepest.shape, deepest)
 
     def refuse(self, reason: Message) -> None:
-        """Act on an answer that is not finite."""
+        """Raise a ParameterError with the reason; called if the law returns a number that is not finite."""
         raise ParameterError(reason).tag("invalid_law")
 
     def _require_finite(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
+        """The law's values in this shape; `refuse` is called if one is not finite."""
         found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
         bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
         if bad.any():

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Runner(Shown):
-    """A base with two edges: how wide and how high it is along its length. It has no mass: that is its body's.
+    """Shape of a base with two edges: width and height along its length. Its mass belongs to the body that carries it.
 
     Attributes
     ----------

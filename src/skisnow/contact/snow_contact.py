@@ -54,7 +54,7 @@ class ContactForces(Shown):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Sections(Shown):
-    """A runner's sections over the lines of snow, from the tail on; all (n,).
+    """Depths, forces and velocities of a runner on each line of snow, from the tail on; all (n,).
 
     Attributes
     ----------
@@ -236,7 +236,7 @@ class SnowContact(Shown):
 
     @property
     def unseen_track_width(self) -> float:
-        """Greatest width (m) along a runner of older tracks that lay between two lines of snow, and so were not met."""
+        """Greatest width (m) along a runner of older tracks between two lines of snow, which no line notices."""
         return self.compiled.unseen_track()[0]
 
     @property
@@ -255,7 +255,7 @@ class SnowContact(Shown):
         return self.compiled.delayed_energy()
 
     def state(self) -> ContactState:
-        """The history of this contact, to go back to; later tracks of others go with it."""
+        """History of this contact for `restore`, which also removes all tracks that others have left since."""
         return ContactState.of(self.compiled)
 
     def restore(self, state: ContactState) -> None:
@@ -283,6 +283,7 @@ class SnowContact(Shown):
         beams: Beams,
         rates: Beams,
     ) -> tuple[FloatArray, FloatArray, FloatArray, float, list[FloatArray] | None, list[FloatArray] | None]:
+        """Position, rotation, velocity, dt, and unknowns and rates of beams, after checks of shapes and values."""
         k = len(self.runners)
         where, axes = (
             shaped("SnowContact: position", position, (k, 3)),

@@ -169,6 +169,7 @@ class SnowField(Shown):
             ).tag("contradiction", kind=type(law).__name__)
 
     def _require_one_place(self) -> None:
+        """Reject shares that are not above 0, and a strength share next to an S_f or law that it cannot multiply."""
         _require("strength_share", _minimum(self.strength_share), 0.0, above=True)
         _require("friction_share", _minimum(self.friction_share), 0.0, above=True)
         shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
@@ -182,6 +183,7 @@ class SnowField(Shown):
             ).tag("contradiction", kind=type(self.shear).__name__)
 
     def _require_own_law_for_rate(self) -> None:
+        """Reject damping, delayed depth and a bearing height with a penetration law: they act with H_V and k_u only."""
         if self.penetration is not None and self.shear_bearing != "whole-edge":
             raise ParameterError(
                 "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; remove it, or the penetration law"
@@ -211,7 +213,7 @@ class SnowField(Shown):
         return out
 
     def _friction(self) -> core.FrictionLaw:
-        """Coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀), which the laws of `forces.friction` are."""
+        """The friction law as coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀) for the core."""
         law, out = self.friction, core.FrictionLaw()
         out.stick = self.stick_displacement
         out.is_vector = self.friction_direction == "vector"
@@ -231,7 +233,7 @@ class SnowField(Shown):
         return out
 
     def _strength(self) -> float | Grid:
-        """S_f, or the strength that the core multiplies by a share over the edge angle."""
+        """S_f or the law's strength (N/m²) times `strength_share`; the core applies its change with the edge angle."""
         law, share = self.shear, self.strength_share
         strength = self.failure_shear_stress
         if isinstance(law, ConstantShear | DensityShear | NaturalDensityShear):
@@ -289,11 +291,13 @@ _LIMITS: Final = {
 
 
 def _require(name: str, value: float, limit: float, *, above: bool = False) -> None:
+    """Reject a number that is below a limit, or with `above` not above it."""
     if not (math.isfinite(value) and (value > limit if above else value >= limit)):
         raise ParameterError(_LIMITS[above]).tag("out_of_range", name=name, value=value, limit=limit)
 
 
 def _core_grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:
+    """The number or grid as the core's type; `goes_on`: True if the slope at the border continues beyond it."""
     if not isinstance(value, Grid):
         return core.Grid(float(value))
     steps = [float(np.ptp(places)) / (len(places) - 1) if len(places) > 1 else 1.0 for places in (value.x, value.y)]
