@@ -90,7 +90,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
 def _of_site(
     results: dict[str, Any], place: tuple[str, str], keys: tuple[str, str], site: str | None, path: str | Path
 ) -> tuple[float | None, Interval | None]:
-    """A mean of the site and its interval; files of earlier versions have none."""
+    """Mean of a site (None: all sites) and its interval, by `keys`, from the list at `place`; None if missing."""
     try:
         rows = [row for row in results[place[0]].get(place[1], ()) if row["site"] == site]
         value, interval = (rows[0][key] for key in keys) if rows else (None, None)
@@ -126,7 +126,7 @@ def _sites(results: dict[str, Any]) -> set[str]:
 
 
 def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: str | Path) -> FloatArray:
-    """The values of the used experiments; 0 N/mm² of a test without moment is a value, null is not."""
+    """Values (n,) of `key` in the used experiments of a site (None: all sites); experiments with null are omitted."""
     try:
         rows = [row for row in results[part]["experiments"] if row["used"] and site in (None, row["site"])]
         return np.array([float(row[key]) for row in rows if row[key] is not None])
@@ -138,7 +138,7 @@ def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: 
 
 
 def snow_dict(snow: SnowProperties) -> dict[str, Any]:
-    """Origin of a snow, and its intervals in the units of the contract; that of k_u/H_V if it was measured."""
+    """JSON values of a snow: source, 95 % intervals of H_V and S_f, and those of k_u/H_V and u_y if measured."""
 
     def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
         return None if ends is None else [end / unit for end in ends]

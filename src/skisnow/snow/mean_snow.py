@@ -69,7 +69,7 @@ def with_measured_displacement(snow: SnowProperties, displacement_mm: float, end
 
 
 def site_named(site: str | None, sites: Iterable[str]) -> str | None:
-    """A campaign's own name of a site: "C" is its "site C" where it has no "C".
+    """The campaign's own name of a site: "C" also names its "site C" if it has no "C".
 
     >>> site_named("C", ["site A", "site C"]), site_named("site C", ["site C"]), site_named("Z", ["site C"])
     ('site C', 'site C', 'Z')
@@ -82,7 +82,7 @@ def site_named(site: str | None, sites: Iterable[str]) -> str | None:
 
 
 def site_in_words(site: str | None) -> str:
-    """A site that is called "site A" is not called "site site A".
+    """Name of a site after the word "site", which is not repeated; "all sites" for None.
 
     >>> site_in_words("C"), site_in_words("site C"), site_in_words(None)
     ('site C', 'site C', 'all sites')
@@ -109,7 +109,7 @@ def no_used_experiment(source: object, site: str | None, sites: Sequence[str]) -
 
 
 def _mean(values: FloatArray) -> tuple[float, Interval | None]:
-    """The mean and its interval by Student's t; no interval for a single value."""
+    """Mean and its 95 % interval by Student's t; the interval is None for a single value."""
     mean = math.fsum(values.tolist()) / values.size
     if values.size < 2:
         return mean, None

@@ -108,7 +108,7 @@ def without_range_warnings() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class PenetrometerRelation:
-    """Density, and where there is one the surface area, from median force F (N) and element size L (m) of windows.
+    """Published relation of density and surface area to median force F (N) and element size L (m) of windows.
 
     source: the publication in short.
     window: length of the windows that it was fitted with (m).
@@ -126,7 +126,7 @@ class PenetrometerRelation:
     specific_surface_area: Callable[[FloatArray, FloatArray], FloatArray] | None = None
 
     def snow_density(self, median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-        """ρ (kg/m³) of F (N) and L (m)."""
+        """Snow density ρ (kg/m³) from the median force F (N) and the element size L (m)."""
         return proksch_2015.density_of_form(self.density, median_force, element_size)
 
 

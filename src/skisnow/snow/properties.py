@@ -114,6 +114,7 @@ class SnowProperties(Shown):
         return Facts(self.source, self._rows())
 
     def _rows(self) -> tuple[tuple[str, str], ...]:
+        """Symbol and text with interval and unit of each quantity, for notebooks."""
         return (
             ("H_V", _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")),
             ("S_f", _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")),

@@ -30,7 +30,7 @@ DENSITY: Final = (420.47, 102.47, -121.15, -169.96)
 def density_of_form(
     coefficients: tuple[float, float, float, float], median_force: FloatArray, element_size: FloatArray
 ) -> FloatArray:
-    """A + b ln F + c L ln F + d L in kg/m³: the form that others fitted to other snow; F in N, L in mm in it.
+    """Density A + b ln F + c L ln F + d L (kg/m³) with coefficients A to d; F in N, L in mm in the formula.
 
     >>> float(density_of_form((1.0, 2.0, 4.0, 8.0), np.array(1.0), np.array(0.5e-3)))
     5.0
