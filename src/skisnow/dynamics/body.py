@@ -33,7 +33,7 @@ class FlexibleSki(ShownFields):
     coupling
         Block of the mass matrix between the beam's unknowns and the body's six, (n, 6).
     damping
-        Times the stiffness (s): Kelvin–Voigt damping.
+        Factor (s) of the stiffness matrix that gives the damping matrix: Kelvin–Voigt damping.
     inertia
         Mass matrix of the undeformed ski about its boot, in its own axes, (6, 6): part of the body's, too. Without it
         the force of the ski on its boot is unknown, and its boot cannot move.
@@ -80,14 +80,14 @@ class FlexibleSki(ShownFields):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class Body(ShownFields):
-    """A rigid body on skis, SI, vectors in its own frame but for gravity.
+    """A rigid body on skis in SI units; vectors are in its own frame, except gravity.
 
     Attributes
     ----------
     inertia
         Mass matrix of the body with its undeformed skis: place, then rotation, (6, 6).
     mass, first_moment
-        Of both together (kg); mass times place of the centre of mass (kg m), (3,).
+        Mass of body and skis together (kg); mass times place of the centre of mass (kg m), (3,).
     skis
         One or more.
     gravity
@@ -169,7 +169,7 @@ class BootPose(Shown):
 
     @classmethod
     def unchecked(cls, *arrays: FloatArray) -> BootPose:
-        """Pose of arrays that are known to be right, seven times faster: place, axes, velocity, turning."""
+        """Pose from valid arrays (place, axes, velocity, turning) without checks, which takes a seventh of the time."""
         pose = object.__new__(cls)
         for name, array in zip(cls.__slots__, arrays, strict=True):
             object.__setattr__(pose, name, array)
@@ -188,13 +188,13 @@ class BootPose(Shown):
 
     @classmethod
     def of(cls, place: npt.ArrayLike, edge_angle: float, pitch: float = 0.0, heading: float = 0.0) -> BootPose:
-        """A boot at rest at a place (m), by its angles (rad)."""
+        """Pose of a boot at rest from its place (m), edge angle, pitch and heading (rad)."""
         return cls(np.asarray(place, float), axes_of(edge_angle, pitch, heading))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class BootMotion(ShownFields):
-    """A boot on its way from one pose to another: place and rotation are cubics that meet both with their rates.
+    """Motion of a boot between two poses: cubics of place and rotation that match poses and rates at both ends.
 
     Attributes
     ----------

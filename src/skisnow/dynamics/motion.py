@@ -43,18 +43,18 @@ _LAST: Final = max(Ended)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
-    """Length of the steps.
+    """Rule for the length of the time steps.
 
     Attributes
     ----------
     first
         The first step, ``longest`` at most, or with ``fixed`` every step (s), halved where it is not solved.
     fixed
-        Whether the step stays.
+        True for steps of constant length.
     tolerance
         Error of position of one step (m); one metre from the boots for rotations.
     longest, shortest
-        Between which the error control chooses (s).
+        Limits of a step that the error control chooses (s).
     closeness
         Share of a step's own error to which Newton's method solves it.
     """
@@ -89,7 +89,7 @@ class StepControl:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DynamicsState:
-    """A moment of dynamics; `Dynamics.state` returns it, `Dynamics.restore` accepts it."""
+    """State of body and contact at one time; `Dynamics.state` returns it, `Dynamics.restore` accepts it."""
 
     motion: core.Dynamics
     contact: ContactState
@@ -119,9 +119,9 @@ _OF_SKIS: Final[int] = MOMENT["work_given"].stop
 
 
 def moment_parts(rows: FloatArray, skis: Sequence[FlexibleSki]) -> dict[str, FloatArray]:
-    """Parts of rows (..., width) of `Dynamics.moment`: the time (s), those of `MOMENT`, and of each ski (..., skis, …).
+    """Arrays by name from rows (..., width) of `Dynamics.moment`: time (s), those of `MOMENT`, and of each ski these.
 
-    pushes: force along the edge, forward positive; of friction across it, and off the surface (N), (3,).
+    pushes: force along the edge, forward positive; friction across the edge, and off the surface (N), (3,).
     along: depth of the edge (m), force and shear per length (N/m) at the m nodes, (3, m).
     beam_dofs: deflection (m), its slope and twist (rad) at each free node, (n,).
     boots: as `Dynamics.boots`, (6, 3).
@@ -230,14 +230,14 @@ class Dynamics:
         return self.moment[_OF_SKIS:].reshape(len(self.body.skis), -1)[:, -6:]
 
     def find_equilibrium(self) -> float:
-        """Move to static equilibrium in height, roll, pitch and deflection; Newton's last step, the residual (m).
+        """Move to static equilibrium in height, roll, pitch and deflection; returns the size of Newton's last step (m).
 
         Position along the slope and heading stay.
         """
         return float(self._core.settle())
 
     def move_to(self, position: FloatArray, rotation: FloatArray) -> None:
-        """Put the body elsewhere before it begins, its skis bent as they are."""
+        """Set position (m) and rotation of the body before `begin`; the deflections of its skis stay."""
         self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
 
     def begin(self, velocity: FloatArray) -> None:
@@ -246,12 +246,12 @@ class Dynamics:
         self._core.begin()
 
     def advance(self, until: float) -> Ended:
-        """Take steps until a time (s), which the last one meets; an interrupt is heard in between.
+        """Take steps until a time (s), at which the last step ends exactly; Ctrl-C is possible between steps.
 
         Raises
         ------
         ParameterError
-            They end because a shear law in Python gives no finite strength.
+            The steps fail because a shear law in Python returns a strength that is not finite.
         """
         while True:
             ended = self._core.advance(until, STEPS_AT_ONCE)
