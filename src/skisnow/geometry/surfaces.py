@@ -60,7 +60,7 @@ class Grid(ShownFields):
 
     @property
     def steps(self) -> tuple[float, float]:
-        """Between places in x and in y (m); 1 where there is but one place."""
+        """Spacing of the places in x and in y (m); 1 for a single place."""
         x, y = (float(np.ptp(places)) / (len(places) - 1) if len(places) > 1 else 1.0 for places in (self.x, self.y))
         return x, y
 
@@ -78,7 +78,7 @@ class Grid(ShownFields):
         return self._patched(x, y)[0]
 
     def _patched(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Value, slopes (1/m), and how far beyond the border along those slopes (in the value's unit)."""
+        """Value, dz/dx, dz/dy, and the change of the value beyond the border along these slopes; 0 inside."""
         at = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         steps, first = self.steps, (self.x[0], self.y[0])
         counts = self.values.shape
@@ -91,7 +91,7 @@ class Grid(ShownFields):
         return value.reshape(shape), slopes[0].reshape(shape), slopes[1].reshape(shape), beyond.reshape(shape)
 
     def _extrapolated(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Value and slopes; beyond the border they continue with the slope of the border."""
+        """Value, dz/dx and dz/dy at places (m); beyond the border the value continues with the slope of the border."""
         value, along_x, along_y, beyond = self._patched(x, y)
         return value + beyond, along_x, along_y
 
@@ -164,13 +164,13 @@ def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Pat
 
 
 def _cell(at: FloatArray, count: int) -> tuple[tuple[IntArray, IntArray], FloatArray]:
-    """Both ends of the cells that places are in, and the shares of the way between them."""
+    """Indices of both ends of each place's cell along an axis, and the share of the cell before the place."""
     low = np.clip(np.floor(at), 0, max(count - 2, 0)).astype(np.intp)
     return (low, np.minimum(low + 1, count - 1)), np.clip(at - low, 0.0, 1.0)
 
 
 def _slope(values: FloatArray, row: IntArray, column: IntArray, axis: int) -> FloatArray:
-    """For each step, by differences: central inside; at a border the parabola's, or the chord's of two values."""
+    """Differences of the values per step along an axis: central inside, of a parabola (or chord of two) at a border."""
     count, at = values.shape[axis], (row, column)[axis]
 
     def value(place: IntArray) -> FloatArray:
@@ -188,11 +188,13 @@ def _slope(values: FloatArray, row: IntArray, column: IntArray, axis: int) -> Fl
 
 
 def _hermite_weights(f: FloatArray) -> _Weights:
+    """Weights of the ends of a cell for the value of the cubic at its share f (0 to 1)."""
     e = 1.0 - f
     return _Weights((e * e * (1.0 + 2.0 * f), f * f * (3.0 - 2.0 * f)), (f * e * e, -f * f * e))
 
 
 def _hermite_slope(f: FloatArray) -> _Weights:
+    """Weights of the ends of a cell for the slope of the cubic at its share f, per step."""
     e = 1.0 - f
     return _Weights((-6.0 * f * e, 6.0 * f * e), (e * (1.0 - 3.0 * f), f * (3.0 * f - 2.0)))
 
@@ -202,7 +204,7 @@ HALVING: Final = math.sqrt(math.log(2.0) / math.pi)
 
 
 def smoothed(values: FloatArray, steps: tuple[float, float], *, cutoff: float) -> FloatArray:
-    """Values over a grid without structures shorter than a length.
+    """Values over a grid after a Gaussian filter that removes waves shorter than a length.
 
     values: (n, m) at evenly spaced places.
     steps: between the places along both axes (m), > 0.

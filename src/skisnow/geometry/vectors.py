@@ -48,7 +48,7 @@ def unit(a: Vector) -> Vector:
 
 
 def combined(numbers: Vector, axes: Sequence[Vector]) -> Vector:
-    """Vector with these components along three axes (rows).
+    """Sum of three axes (rows), each times one of three components.
 
     >>> combined((2.0, 3.0, 4.0), ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
     (3.0, 2.0, 4.0)
@@ -68,7 +68,7 @@ def applied(rows: Sequence[Vector], a: Vector) -> Vector:
 
 
 def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:
-    """Array (3, 3) of `axis_rows`."""
+    """Axes of a boot from its angles (rad), as the rows of an array (3, 3); see `axis_rows`."""
     return np.array(axis_rows(edge_angle, pitch, heading))
 
 
