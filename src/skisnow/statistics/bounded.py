@@ -102,6 +102,7 @@ def _require_few(p: int) -> None:
 
 
 def _root_weights(weights: npt.ArrayLike, n: int) -> FloatArray:
+    """Square roots (n,) of the weights, after a check that they are finite and at least 0."""
     w = np.asarray(weights, dtype=float)
     if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
         raise ParameterError("weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response").tag(

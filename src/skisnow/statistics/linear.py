@@ -241,7 +241,7 @@ def cluster_intervals(response: npt.ArrayLike, predictors: npt.ArrayLike, cluste
 
 
 def _bias_reduced(fit: LeastSquares, cluster: npt.NDArray[np.intp], G: int) -> tuple[FloatArray, FloatArray]:
-    """Standard errors and degrees of freedom; in the coordinates of Q, where XᵀX is one."""
+    """Bias-reduced standard errors (p,) from the clusters, and their degrees of freedom; NaN if undetermined."""
     Q = fit.orthogonal
     share = _cluster_sums(Q[:, :, None] * Q[:, None, :], cluster, G)
     value, vector = np.linalg.eigh(share)
