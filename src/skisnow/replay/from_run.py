@@ -44,13 +44,13 @@ _MOST_PLACES: Final = 40_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """Slope, ski and sizes of a run.
+    """Values of a run that do not change over time, and its boots.
 
     slope, ski: as in the scenario.
-    line_spacing: distance of the snow's lines along the path (m).
+    line_spacing: distance of the computed lines of snow along the path (m).
     edge_angle, stance_width, centre_of_mass_height: sizes of the sledge (rad, m, m).
     course: course in the scenario's axes, for its gates.
-    body: height (m) and weight (N) of the skier's body (default: a sledge).
+    body: height (m) and weight (N) of the skier's body; None for a sledge without a skier.
     boots: moving boots (default: fixed on the sledge).
     facts: lines of name and value for the reader.
     """
@@ -70,14 +70,14 @@ class Setting:
 def replay_of_run(
     run: Run, *, title: str = "A simulated run", track: ReplayTrack | None = None, gates: npt.ArrayLike | None = None
 ) -> Replay:
-    """The replay of a run.
+    """Build the replay of a simulated run in memory.
 
     run: result of `skisnow.simulate`.
     title: title for the reader.
     track: measured track in the run's axes.
-    gates: X and y of the gates' poles (m), shape (g, 2), alternately red and blue (default: the turning poles of the
+    gates: x and y of the gates' poles (m), shape (g, 2), alternately red and blue (default: the turning poles of the
         run's course).
-    Raises ParameterError: the run has no moment, or the gates are not pairs of finite numbers.
+    Raises ParameterError: the run has no row of time, or the gates are not pairs of finite numbers.
     """
     setting = _fixed_parts_of_run(run)
     replay = assemble_replay(_arrays(run), setting, title=title, track=track)
@@ -128,7 +128,7 @@ def _fixed_parts_of_run(run: Run) -> Setting:
 def facts_of(
     *, outcome: str, hardness: float, stress: float | None, ratio: float, ski: str, edge_angle: float | None
 ) -> tuple[tuple[str, str], ...]:
-    """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm², edge angle in degrees (None: by a skier)."""
+    """Names and texts shown with a replay; H_V in N/mm³, S_f in N/mm², edge angle in degrees, None if a skier edges."""
     skis = Message("{ski}, edged by the skier", ski=ski)
     if edge_angle is not None:
         skis = Message("{ski}, edge angle {edge_angle:.3g}°", ski=ski, edge_angle=edge_angle)
@@ -144,7 +144,7 @@ def facts_of(
 def assemble_replay(
     arrays: Mapping[str, FloatArray], setting: Setting, *, title: str, track: ReplayTrack | None = None
 ) -> Replay:
-    """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
+    """Build a replay from a run's setting and arrays, named as in run.nc, but one array for the parts of a vector."""
     if not len(arrays["time"]):
         raise ParameterError("{run} has no moment to show: it ended before it began").tag("no_data", run=title)
     with np.errstate(divide="ignore"):
@@ -197,7 +197,7 @@ def _gate_times(course: Course, arrays: Mapping[str, FloatArray], setting: Setti
 
 
 def _boot_axes(boots: ReplayBoots) -> FloatArray:
-    """Axes (n, 2, 3, 3) of boots as columns."""
+    """Axes of both boots in space at each time, (n, 2, 3, 3): ahead, left and off the base as columns."""
     turns = rotation_of(boots.attitude.reshape(-1, 4))
     return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
 
@@ -209,7 +209,7 @@ def _skier(arrays: Mapping[str, FloatArray], height: float, weight: float, boots
 
 
 def _terrain(slope: Terrain, path: FloatArray) -> ReplayTerrain:
-    """Heights around a run, at most about `_MOST_PLACES` of them."""
+    """Grid of heights of a slope around the path (n, 3) of a run, with at most about `_MOST_PLACES` places."""
     surface = slope.surface
     low, high = (path[:, :2].min(axis=0) - _AROUND, path[:, :2].max(axis=0) + _AROUND)
     step = max(_STEP, float(np.sqrt(np.prod(high - low) / _MOST_PLACES)))
@@ -227,7 +227,7 @@ def moving_boots(place: FloatArray, axes: FloatArray) -> ReplayBoots:
 
 
 def _gates(places: npt.ArrayLike, slope: Slope) -> FloatArray:
-    """Feet of the poles on the snow, shape (g, 3)."""
+    """Places of the gates' poles on the snow (m), shape (g, 3), from their x and y."""
     points = np.asarray(places, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
         raise ParameterError("gates are pairs of x and y in m; given is an array of shape {shape}").tag(
@@ -260,7 +260,7 @@ def _skis_of_arrays(arrays: Mapping[str, FloatArray], setting: Setting) -> Repla
 
 
 def _groove(arrays: Mapping[str, FloatArray], spacing: float) -> ReplayGroove:
-    """Pieces of groove in the order of time."""
+    """Pieces of groove with the times when a boot passed them, in the order of these times."""
     when, ski = groove_times(arrays["groove"], arrays["time"], arrays["ski"])
     order = np.argsort(when, kind="stable")
     columns = {name: arrays[f"groove_{name}"][order] for name in ("left", "width", "depth", "residual_depth")}

@@ -74,7 +74,7 @@ def _ski_with_walls(base: FloatArray, top: FloatArray, face: FloatArray) -> Mesh
 
 
 def _strips(sections: int, corners: int, pairs: list[tuple[int, int]]) -> IntArray:
-    """Triangles (t, 3) between neighbouring sections, for each pair of corners a strip."""
+    """Triangles (t, 3), as vertex indices, between neighbouring sections of a ski: a strip for each pair of corners."""
     j = np.arange(sections - 1)[:, None] * corners
     a, b = (np.array([pair[i] for pair in pairs]) + j for i in (0, 1))
     below, above = np.stack([a, a + corners, b], axis=-1), np.stack([b, a + corners, b + corners], axis=-1)
@@ -111,7 +111,7 @@ def _snow_normals(replay: Replay, place: FloatArray) -> FloatArray:
 
 
 def snow_mesh(replay: Replay) -> Mesh:
-    """The slope around the run."""
+    """Mesh of the slope around the run."""
     low, high = _slope_bounds(replay)
     is_bent = replay.profile is not None, replay.terrain is not None
     x, y = (
@@ -125,9 +125,9 @@ def snow_mesh(replay: Replay) -> Mesh:
 
 
 def grid_mesh(replay: Replay) -> Mesh:
-    """Lines on the snow at each metre of x and y, darker at each fifth; a profile's x is horizontal.
+    """Mesh of lines on the snow at each metre of x and y, darker at each fifth; a profile's x is horizontal.
 
-    They are in pieces of at most a metre: a line of a piece that passes behind the eye is not drawn everywhere.
+    The lines have pieces of at most a metre, because some viewers do not draw one that passes behind the camera.
     """
     low, high = np.ceil(_slope_bounds(replay)[0]), np.floor(_slope_bounds(replay)[1])
     x, y = (np.arange(low[axis], high[axis] + 0.5) for axis in (0, 1))
@@ -252,7 +252,7 @@ class Mesh:
 
 @dataclass(slots=True)
 class Glb:
-    """Builder of a model; each method returns the index of the added element."""
+    """Builder of a model file in glTF 2.0 (GLB); `array`, `mesh`, `node` and `skin` return an index of the element."""
 
     content: bytearray = field(default_factory=bytearray)
     elements: dict[str, list[dict[str, Any]]] = field(default_factory=lambda: defaultdict(list))
@@ -264,7 +264,7 @@ class Glb:
     def array(
         self, values: npt.ArrayLike, *, kind: str = FLOAT, bounds: bool = False, target: int | None = None
     ) -> int:
-        """Add numbers (n,) or (n, parts), with minimum and maximum of each part if `bounds`."""
+        """Add an array (n,) or (n, parts) as an accessor; with minimum and maximum of each part if `bounds`."""
         numbers = np.ascontiguousarray(values, dtype=kind)
         self.content += b"\0" * (-len(self.content) % 4)  # each begins at a multiple of its component's size, 3.6.2.4
         view = {"buffer": 0, "byteOffset": len(self.content), "byteLength": numbers.nbytes}
@@ -305,7 +305,7 @@ class Glb:
         return self._add("skins", skin)
 
     def move(self, node: int, path: str, times: int, values: int, *, interpolation: str = "LINEAR") -> None:
-        """Animate the translation, rotation or scale of a node with arrays of times and values."""
+        """Animate a node's translation, rotation or scale (`path`) by the accessors of times and values."""
         sampler = self._add("samplers", {"input": times, "output": values, "interpolation": interpolation})
         self._add("channels", {"sampler": sampler, "target": {"node": node, "path": path}})
 

@@ -90,7 +90,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
 
 
 def _with_rising_times(replay: Replay) -> Replay:
-    """Replay from time 0 with only moments whose times differ as float32: keys of an animation must rise."""
+    """Copy of a replay from time 0 without moments of equal time as float32, because keys of an animation must rise."""
     time = (replay.time - replay.time[0]).astype(np.float32).astype(float)
     groove = replace(replay.groove, time=replay.groove.time - replay.time[0])
     moments = np.flatnonzero(np.append(np.diff(time) > 0.0, True))  # the last one of equal times
@@ -106,7 +106,7 @@ def _about(axis: int, angle: FloatArray | float) -> FloatArray:
 
 
 def _skier(model: Glb, replay: Replay, times: int) -> tuple[list[int], list[int]]:
-    """Nodes of a skier: the boots, for the skis, and the parts of the body, for the sledge."""
+    """Add a skier; returns the nodes of the boots, to be put below the skis, and of the body, below the sledge."""
     boots: list[int] = []
     body: list[int] = []
     for part in [] if replay.skier is None else skier_parts(replay.skier.height):
@@ -120,7 +120,7 @@ def _skier(model: Glb, replay: Replay, times: int) -> tuple[list[int], list[int]
 
 
 def _moving_node(model: Glb, name: str, times: int, place: FloatArray, turn: FloatArray, **properties: Any) -> int:
-    """Node that follows places (n, 3) and quaternions x, y, z, w (n, 4) at the moments of an accessor."""
+    """Add a node that follows places (n, 3) and quaternions x, y, z, w (n, 4) at the times of the accessor `times`."""
     node = model.node(name, translation=place[0], rotation=turn[0], **properties)
     model.move(node, "translation", times, model.array(place))
     model.move(node, "rotation", times, model.array(turn))
@@ -128,7 +128,7 @@ def _moving_node(model: Glb, name: str, times: int, place: FloatArray, turn: Flo
 
 
 def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, times: int, on_ski: list[int]) -> tuple[int, int]:
-    """Nodes of a ski on the sledge: the carrier of its joints and boot, and the node of its mesh.
+    """Add a ski; returns the node that carries its joints and boot, and that of its mesh, both below the sledge.
 
     Only the joints place a mesh with a skin (section 3.7.3.2). Its node is on the sledge because some viewers determine
     the visibility of a mesh once, from the place of its node.
@@ -159,7 +159,7 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, times: int, 
 
 
 def _groove(model: Glb, replay: Replay) -> list[int]:
-    """Nodes of the parts of the groove, each visible after the end of its step."""
+    """Add the groove in parts of `GROOVE_STEP` seconds, each visible from its end on; returns their nodes."""
     made = replay.groove.time
     step = np.maximum(0, np.ceil(made / GROOVE_STEP - 1e-9)).astype(int)
     appear = model.array(_HIDDEN_AND_SHOWN)
@@ -178,7 +178,7 @@ _CAMERAS: Final = [{"name": "along", "type": "perspective", "perspective": {"yfo
 
 
 def _camera(model: Glb, replay: Replay, times: int, places: int) -> int:
-    """Node of a camera uphill of the sledge, which moves along; on a profile or terrain it pitches with the steepness.
+    """Add a camera that follows uphill of the sledge, and on a profile or terrain pitches with the snow; its node.
 
     times, places: accessors of the moments and of the sledge's places.
     """
@@ -199,7 +199,7 @@ def _camera(model: Glb, replay: Replay, times: int, places: int) -> int:
 
 
 def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:
-    """Further data of the model."""
+    """Values of a replay for the property `extras` of its model: exaggeration, meaning of the colours, facts."""
     force = end_of_force_scale(replay.skis.force_per_length)
     return {
         "exaggeration_of_bending_and_twist": exaggeration,

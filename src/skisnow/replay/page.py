@@ -99,7 +99,7 @@ def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENG
 
 @cache
 def page_words(language: str) -> dict[str, str]:
-    """Translated texts of the scripts by English text; empty for English."""
+    """Translation of each text in the scripts of the page by its English text; empty for English."""
     if language == ENGLISH:
         return {}
     texts = {text for name in MODULES for text in _SAID.findall(static_text(name))}
@@ -107,13 +107,13 @@ def page_words(language: str) -> dict[str, str]:
 
 
 def in_language(run: Replay, language: str) -> Replay:
-    """Replay with the facts for the reader in a language."""
+    """Copy of a replay whose facts, the texts shown with it, are in a language."""
     facts = ((translated(name, language), translated(text, language)) for name, text in run.facts)
     return replace(run, facts=tuple(facts))
 
 
 def static_text(name: str) -> str:
-    """Text of a script or style sheet."""
+    """Content of a script or style sheet of the replay page by its file name."""
     return files(_PACKAGE).joinpath("static", name).read_text(encoding="utf-8")
 
 
@@ -157,7 +157,7 @@ _Part = TypeVar("_Part", Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplayS
 
 
 def replay_bytes(replay: Replay) -> bytes:
-    """Bytes of a replay in the format of this module.
+    """Bytes of a replay as the page reads it: a header in JSON, then the arrays.
 
     A run of 5 s of two skis with 42 stations at 100 moments a second is 0.5 MB: two thirds along the skis, a third of
     groove.
@@ -212,7 +212,7 @@ def _arrays_of(part: _Part | None, prefix: str = "") -> dict[str, FloatArray]:
 
 
 def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
-    """Concatenated meshes of the skier's parts; triangles count from each part's first vertex."""
+    """Vertices, colours and triangles of all parts of a skier; triangles count from each part's first vertex."""
     meshes = [part.mesh for part in parts]
     return {
         "skier_vertices": np.concatenate([mesh.vertices for mesh in meshes]),
@@ -238,7 +238,7 @@ def _head(replay: Replay) -> dict[str, Any]:
 
 
 def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
-    """Height and weight of the body, names of the joints, and joints and sizes of the parts' meshes."""
+    """Header of a skier: height, weight, names of the joints; of each part its joints and the size of its mesh."""
     parts = [
         {"name": part.name, "start": part.start, "end": part.end, "vertices": len(part.mesh.vertices),
          "triangles": len(part.mesh.pieces)}

@@ -67,7 +67,7 @@ class ReplayTerrain:
 
 
 def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Fraction of the distance to the next place, index of the place, and the position limited to the ends."""
+    """Cell of each position on a rising grid: fraction within the cell, its index, and the position within the grid."""
     within = np.clip(np.asarray(at, dtype=float), places[0], places[-1])
     number = np.clip(np.searchsorted(places, within, side="right") - 1, 0, len(places) - 2)
     share = (within - places[number]) / (places[number + 1] - places[number])
@@ -257,7 +257,7 @@ def groove_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tup
 
 
 def _passage(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Time (k,) of the nearest passage, and its distance (k,)."""
+    """Time (k,) at which a boot's track (n, 3) passes nearest to each piece of groove, and the distance (k,) (m)."""
     if len(time) < _NEIGHBOURS or not len(middle):
         return np.full(len(middle), time[0]), np.linalg.norm(middle - track[0], axis=1)
     nearest = np.asarray(cKDTree(track).query(middle)[1], dtype=np.int64)

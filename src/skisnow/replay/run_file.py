@@ -96,7 +96,7 @@ def _boots(file: Any) -> ReplayBoots | None:
 
 
 def _vectors(file: Any, pattern: str, names: Sequence[str] = "xyz") -> FloatArray:
-    """Vectors (…, 3) from the variables of their components."""
+    """Vectors (…, 3) from the variables of their components, whose names are the pattern with each of `names`."""
     return np.stack([_values(file, pattern.format(name)) for name in names], axis=-1)
 
 
@@ -182,7 +182,7 @@ _ORTHOGONAL: Final = 1e-6
 
 
 def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
-    """Check a run's arrays, named as in run.nc with vectors in one."""
+    """Raise a ParameterError if a run's arrays, named as in run.nc, cannot be drawn, such as times that do not rise."""
     require_finite(arrays)
     if np.any(np.diff(arrays["time"]) < _SHORTEST_STEP):
         raise ParameterError("time does not rise").tag("not_rising")
@@ -195,7 +195,7 @@ def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
 
 
 def require_finite(arrays: Mapping[str, FloatArray]) -> None:
-    """Check that numbers are finite and not too large; errors as in `require_drawable`."""
+    """Raise a ParameterError for arrays with numbers that are not finite or too large, or too small turn radii."""
     for name, values in arrays.items():
         # the radius of a straight path is infinite
         sound = np.abs(values) >= SMALLEST_RADIUS if name == "turn_radius" else np.abs(values) <= LARGEST
@@ -207,7 +207,7 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
 
 
 def scenario_value(values: Mapping[str, Any], name: str) -> Any:
-    """A value of the run's scenario by its full name; None if the scenario lacks it."""
+    """Checked value of a run's scenario by its full key; None if the scenario lacks it."""
     value = values.get(name)
     if value is None:
         return None
@@ -215,7 +215,7 @@ def scenario_value(values: Mapping[str, Any], name: str) -> Any:
 
 
 def needed_value(values: Mapping[str, Any], name: str) -> Any:
-    """A required value of the run's scenario by its full name; errors as in `scenario_value`, or it is missing."""
+    """Checked value of a run's scenario by its full key; an error if the scenario lacks it."""
     value = scenario_value(values, name)
     if value is None:
         raise ParameterError("{name} is missing").tag("missing", name=name)

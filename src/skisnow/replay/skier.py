@@ -84,7 +84,7 @@ def _within_reach(pelvis: FloatArray, ankle: FloatArray, left: FloatArray, heigh
 def _joints(
     height: float, body: FloatArray, pelvis: FloatArray, ankle: FloatArray, boot_axes: FloatArray
 ) -> dict[str, FloatArray]:
-    """All joints in space by name; `body`: axes ahead, left and up, each (n, 3)."""
+    """Places (n, 3) of all joints in space by name; `body`: axes of the body ahead, left and up, each (n, 3)."""
     ahead, left, up = body
     trunk = math.cos(BENT) * up + math.sin(BENT) * ahead
     neck = pelvis + TRUNK.length * height * trunk
@@ -104,7 +104,7 @@ def _joints(
 
 
 def _knee(hip: FloatArray, ankle: FloatArray, axes: FloatArray, height: float) -> FloatArray:
-    """Knee ahead of hip and ankle, with the lower leg in the plane of its boot if possible."""
+    """Place (n, 3) of a knee: ahead of hip and ankle, with the lower leg in the plane of its boot if possible."""
     lengths = THIGH.length * height, SHANK.length * height
     straight = two_bones(hip, ankle, *lengths, axes[:, 0])
     way = _unit_vectors(ankle - hip)
@@ -168,10 +168,10 @@ Ring: TypeAlias = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """A part of the skier.
+    """A drawn part of the skier's body.
 
-    start, end: joints at its origin and in the direction of its z axis; its y axis is to the left. A boot has "left
-        boot" or "right boot" and the axes of the boot.
+    start, end: names of the joints at its origin and in the direction of its z axis; its y axis is to the left. A boot
+        has "left boot" or "right boot" for both, and the axes of the boot.
     mesh: mesh in these axes (m), with colours in linear light.
     """
 
@@ -229,7 +229,7 @@ def _limb_parts(side: str, height: float) -> list[Part]:
 
 
 def _boot() -> Mesh:
-    """Mesh of a boot in its axes."""
+    """Mesh of a ski boot with its plate, in the axes of the boot."""
     plate = _round([(0.012, 0.2, 0.031, 0.0), (0.045, 0.18, 0.031, 0.0)], METAL, square=4.0)
     shell = [(0.04, 0.155, 0.044, 0.0), (0.075, 0.16, 0.05, 0.0), (0.105, 0.15, 0.052, -0.005)]
     top = STAND_HEIGHT + 0.07
@@ -239,7 +239,7 @@ def _boot() -> Mesh:
 
 
 def _round(rings: Sequence[Ring], colour: tuple[int, int, int], *, square: float = 2.0) -> Mesh:
-    """Closed surface through rings; `square` above 2 has corners (a superellipse)."""
+    """Mesh of a closed surface through cross sections: ellipses, or angular superellipses with `square` above 2."""
     angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
     cosine, sine = (np.sign(part) * np.abs(part) ** (2.0 / square) for part in (np.cos(angle), np.sin(angle)))
     ends = [(rings[0][0], 0.0, 0.0, rings[0][3]), *rings, (rings[-1][0], 0.0, 0.0, rings[-1][3])]
@@ -260,7 +260,7 @@ def _round(rings: Sequence[Ring], colour: tuple[int, int, int], *, square: float
 
 
 def _ball(middle: tuple[float, float, float], half: tuple[float, float, float], colour: tuple[int, int, int]) -> Mesh:
-    """Mesh of an ellipsoid."""
+    """Mesh of an ellipsoid about a middle, with half axes `half` (m)."""
     polar = np.linspace(0.0, np.pi, 8)[1:-1]
     rings = [(-half[2] * np.cos(at), half[0] * np.sin(at), half[1] * np.sin(at), 0.0) for at in polar.tolist()]
     mesh = _round(rings, colour)
@@ -292,7 +292,9 @@ _TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0
 
 
 def joint_columns(replay: Replay) -> dict[str, FloatArray]:
-    """Coordinates of OpenSim's model of Rajagopal and others (2016) by name, (n,) each: pelvis (m), angles (degrees).
+    """Motion of a replay's skier as coordinates of OpenSim's model of Rajagopal and others (2016) by name, (n,) each.
+
+    Places of the pelvis are in m, angles in degrees.
 
     The pelvis has the axes of the body and is the middle of the hips. Knees flex to positive angles. The rotation of a
     foot about its shank, which the model's joints do not have, is left out.
@@ -325,7 +327,7 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
 
 
 def _cardan(matrices: FloatArray) -> FloatArray:
-    """Angles (3, n) about z, the turned x and the turned y (degrees)."""
+    """Angles (3, n) (degrees) of rotation matrices (n, 3, 3) about z, the rotated x and the rotated y."""
     return np.asarray(Rotation.from_matrix(matrices).as_euler("ZXY", degrees=True).T)
 
 
