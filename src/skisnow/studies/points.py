@@ -87,7 +87,7 @@ class GridPoints(Points):
         return math.prod(len(values) for values in self.axes.values())
 
     def point(self, number: int) -> Point:
-        """The digits of its number, in a separate base for each axis, are the places on the axes."""
+        """Values of the point with this number, whose digits in a mixed base are the places on the axes."""
         chosen = []
         for values in reversed(list(self.axes.values())):
             number, place = divmod(number, len(values))
@@ -158,7 +158,7 @@ def _fixed_value(fixed: Mapping[str, Any], name: str) -> list[Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """Definition of values instead of a list: ends in the unit of the key."""
+    """Values of an input as a range, instead of a list: first and last value in the unit of the key."""
 
     first: Annotated[float, Quantity("from", "the first value; a range is written { from = 20, to = 70, n = 11 }")]
     last: Annotated[float, Quantity("to", "the last value; a range is written { from = 20, to = 70, n = 11 }")]
@@ -174,7 +174,7 @@ class Axis:
     values: the list; empty for a range.
     ends: from and to, for a range.
     n: number of values of a range on a grid; None where a sample does not need it.
-    log: whether the range is even in the logarithm.
+    log: True if the values are evenly spaced in their logarithm.
     """
 
     key: Quantity
@@ -234,7 +234,7 @@ class Axis:
         return [round(x) for x in values] if self.key.kind == "whole number" else list(values)
 
     def sampled(self, share: FloatArray) -> Column:
-        """The values at shares from 0 to 1 of the axis; of a list each value has the same share."""
+        """Column of the values at shares (n,) from 0 to 1 of the axis; the values of a list share it equally."""
         if self.values:
             index = np.minimum((share * len(self.values)).astype(int), len(self.values) - 1)
             return Column(index, self.values)

@@ -64,7 +64,7 @@ class TableRows(LazySequence):
 
 
 def require_pyarrow() -> Any:
-    """The library of Parquet files."""
+    """Import pyarrow, the library of Parquet files; ParameterError if it is not installed."""
     pyarrow, _ = (
         import_extra(module, extra="parquet", what=Message("A table in Parquet"))
         for module in ("pyarrow", "pyarrow.parquet")
@@ -80,7 +80,7 @@ Reader: TypeAlias = Callable[[str], Any]
 
 
 def cell(value: Any) -> str:
-    """Numbers with all their digits, true and false, nothing if the value is missing.
+    """Text of a value in a CSV table: all digits, true or false, empty for None; formulas are made harmless.
 
     >>> [cell(value) for value in (None, 0.1, 3, True, [1.0, 2.5], "=1")]
     ['', '0.1', '3', 'true', '[1.0, 2.5]', "'=1"]
@@ -105,7 +105,7 @@ def readers(columns: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> 
 
 
 def read_cells(place: str, columns: Sequence[str], cells: Sequence[str], readers: Sequence[Reader]) -> list[Any]:
-    """The values of a row of cells."""
+    """Values of a row from its cells, one reader for each; `place` names the row in errors."""
     if len(cells) != len(columns):
         raise ParameterError(
             "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line"

@@ -64,7 +64,7 @@ def run_study(
     executor: ExecutorLike | None = None,
     progress: Progress | None = None,
 ) -> StudyTable:
-    """Ask one question over a grid or a sample of its inputs: compute the points that are missing, write the table.
+    """Compute the missing points of a study over a grid or a sample of inputs, and write its table.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def run_study(
     Raises
     ------
     ParameterError
-        Finished points of another study is next to the table, or something that is not a table has its name;
+        Finished points of another study are next to the table, or something that is not a table has its name;
         or the number of workers is below 1.
     OutputError
         The table's place cannot be written.
@@ -130,7 +130,7 @@ def run_study(
 
 
 def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptRows:
-    """The finished points of a study, in a file."""
+    """Open or create the file of a study's finished points; `about`: further entries that the file stores."""
     kinds = json_text({name: key.kind for name, key in study.subject.keys.items()})
     columns = json_text(study.columns[:-1])
     about = {"points": str(len(study.points)), "kinds": kinds, "columns": columns, **about}
@@ -169,7 +169,7 @@ def _stamp(path: Path) -> tuple[int, int, int] | None:
 
 @dataclass(frozen=True, slots=True)
 class StudyRows:
-    """From a point to the values of its row.
+    """Function that computes the values of a table row from the inputs of a point.
 
     subject: model that computes the values of a point.
     columns: columns of the table without the fingerprint of the study.
@@ -192,7 +192,7 @@ class StudyRows:
         return [row.get(name) for name in self.columns]
 
     def require_files(self) -> None:
-        """Refuse a worker on which a file is another one or is missing."""
+        """Raise an error if a file of the study is missing on this worker or has other contents."""
         for path, wanted in self.files:
             if _file_hash(path) != wanted:
                 raise SkisnowError(

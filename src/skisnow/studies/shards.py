@@ -53,7 +53,7 @@ class Shard:
         return shard
 
     def points(self, count: int) -> range:
-        """The numbers of its points: every n-th, so that parts take about as long."""
+        """Numbers of the shard's points among `count`: every n-th, so that all shards take about as long."""
         return range(self.number - 1, count, self.count)
 
     def place(self, study: Study) -> Path:
@@ -100,7 +100,7 @@ def run_shard(
 
 
 def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
-    """Put the parts of a study together: the same table as without parts. The parts stay.
+    """Merge the parts of a study into one table, the same as without parts; the parts stay.
 
     out: The table; ends in .csv, .sqlite or .parquet. A table of another study in its place is moved aside.
     parts: The files of `run_shard`, in any order.
@@ -167,7 +167,7 @@ def _merged_rows(parts: Sequence[KeptRows]) -> Iterator[tuple[int, Any]]:
 
 
 def _require_whole(parts: Sequence[KeptRows], count: int) -> None:
-    """Refuse parts in which points are missing."""
+    """Reject parts that lack one of the `count` points."""
     is_there = bytearray(count)
     for part in parts:
         for number in part.numbers():

@@ -38,7 +38,7 @@ class StudyModel(Protocol):
         ...
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """The values of a table of the study under the names of `keys`; an unknown name may stay."""
+        """Values of a table of the study file under the names of `keys`; unknown names are kept."""
         ...
 
     def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
@@ -46,7 +46,7 @@ class StudyModel(Protocol):
         ...
 
     def files(self, points: Sequence[Point]) -> list[Path]:
-        """Files that the points name: when one of them changes, the study is another."""
+        """Files that the points name; a change of one of them makes another study."""
         ...
 
     def __call__(self, point: Point) -> Row:

@@ -48,7 +48,7 @@ MOST_TRIED: Final = 100
 
 
 class _PointModel(ShownFields):
-    """Base of models: a point that cannot be computed gives a row with the outcome "error" and the reason."""
+    """Base of models of a point; if a point fails, its row has the outcome "error" and the reason."""
 
     __slots__ = ()
     keys: ClassVar[Mapping[str, Quantity]]
@@ -86,7 +86,7 @@ class CarveModel(_PointModel):
         self._sources = Sources(self.folder)
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """The values of a table of the study by their names, which they have already."""
+        """Values of a table of the study file, unchanged, because they have the names of the inputs."""
         return dict(table)
 
     def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
@@ -160,7 +160,7 @@ class ScenarioModel(_PointModel):
         return values
 
     def require_sound(self, points: Sequence[Point], fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
-        """Refuse a study of which none of the first points can be computed, with the problem of the first."""
+        """Raise the error of the first point if none of the first points can be computed."""
         first: SkisnowError | None = None
         for point in points[:MOST_TRIED]:
             try:
@@ -196,6 +196,7 @@ class ScenarioModel(_PointModel):
 
 
 def _run_row(scenario: ScenarioFile, run: Run) -> Row:
+    """Values of a table row from a run: the scenario, outcome, end, extremes and energies."""
     finite = run.speed[np.isfinite(run.speed)]
     depth = run.skis.edge_depth[np.isfinite(run.skis.edge_depth)]
     energies = {name: value for name, value in energies_dict(run).items() if name in RUN_RESULTS}

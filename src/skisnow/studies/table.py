@@ -219,9 +219,9 @@ def _require_columns(path: Path, columns: Sequence[str]) -> None:
 
 @dataclass(slots=True)
 class Tally:
-    """Counts of rows.
+    """Counts of the rows of a table by outcome, warnings and errors.
 
-    outcomes: how many rows have each.
+    outcomes: number of rows by outcome.
     warned: how many carry warnings.
     first_failed, first_warned: number, 1 or more, and text of the first row that could not be computed, and of the
         first with warnings.
@@ -264,7 +264,7 @@ class Tally:
 
 
 def write_table(path: Path, rows: TableRows) -> None:
-    """Write a table; it has its name when it is complete, and else nowhere.
+    """Write a table of the format of its suffix; a file with its name is always complete.
 
     path: ends in .csv, .sqlite or .parquet.
     """
@@ -327,7 +327,7 @@ def _write_parquet(path: Path, rows: TableRows) -> None:
 
 
 def _as_text(value: Any) -> str | None:
-    """Text of a value in a column of several types."""
+    """Text of a value in a column that contains values of several types; None stays."""
     return value if value is None or isinstance(value, str) else cell(value)
 
 
