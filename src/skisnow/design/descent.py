@@ -32,7 +32,7 @@ _ROUNDING: Final = 1e-13
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Lines:
-    """Values at a design, all targets' deviations and then the limits' rooms, with their growth (values, variables)."""
+    """Linear model at a design z: deviations from targets, distances to limits; `growth`: their derivatives by z."""
 
     z: FloatArray
     values: FloatArray
@@ -40,7 +40,7 @@ class _Lines:
 
 
 class Descent:
-    """Trust region on the squares of the targets' deviations and the breaches of the limits."""
+    """Trust-region search that minimises the squared deviations from the targets and the violations of the limits."""
 
     def __init__(self, search: Search) -> None:
         self.search = search
@@ -70,7 +70,7 @@ class Descent:
         return near if search.broken(near) <= REACHED and search.worst_deviation(near) <= REACHED else z
 
     def _smallest(self, z: FloatArray, tolerance: float) -> FloatArray:
-        """The best design found from z; ends where less than the tolerance can be gained, to first order."""
+        """Best design found from z; the search ends if the predicted gain is below the tolerance."""
         self.best = self.search.result(z), z
         here, beside = self._linearise(z), None
         for _ in range(_MOST_TRIALS):
@@ -93,7 +93,7 @@ class Descent:
         return self.best[1]
 
     def _share_of_gain(self, trial: FloatArray, value: float, gain: float, size: float) -> float:
-        """Gain at a trial over the expected one, which sets the reach; minus infinity: no ski or no equilibrium."""
+        """Actual over predicted gain of a trial, which sets the trust region; -∞ without ski or equilibrium."""
         try:
             share = (value - self._merit(self._values_of_lines(trial))) / gain
         except SolverError:
@@ -104,7 +104,7 @@ class Descent:
         return share
 
     def _nearest(self, z: FloatArray, home: FloatArray) -> FloatArray:
-        """The design nearest to `home` that reaches all targets and keeps the limits, from one that nearly does."""
+        """Design nearest to `home` that reaches all targets and keeps all limits, from z, which nearly does."""
         one, end, moved, full = np.eye(len(z)), self.rooms.start, np.zeros(len(z)), np.zeros(len(z))
         for _ in range(_MOST_STEPS):
             here, (low, high) = self._linearise(z), _ends(z, _FIRST_REACH)
@@ -130,14 +130,14 @@ class Descent:
         return _Lines(z, self._values_of_lines(z), np.concatenate([*growths, search.linear[0]]))
 
     def _merit(self, *values: FloatArray) -> float:
-        """Mean squares, squares of worst deviations, and the largest breach of a limit; the worse of several lines."""
+        """Value to minimise: squared deviations plus weighted violation, the worst of several linear predictions."""
         squares = [float(np.mean(values[0][part] ** 2)) for part in self.means]
         squares += [max(float(np.max(each[part] ** 2)) for each in values) for part in self.worst]
         rooms = np.min(values, axis=0)[self.rooms]
         return sum(squares) - self.weight * min(0.0, float(np.min(rooms, initial=0.0)))
 
     def _cut(self, here: _Lines, beside: _Lines) -> _Lines:
-        """Lines of another design, moved so far that they do not contradict the values here."""
+        """Linear model of design `beside`, shifted so that it predicts nothing worse than the values of `here`."""
         values = beside.values + beside.growth @ (here.z - beside.z)
         for part in self.worst:
             largest = np.max(np.abs(here.values[part]))
@@ -146,7 +146,7 @@ class Descent:
         return _Lines(here.z, values, beside.growth)
 
     def _step(self, lines: list[_Lines]) -> FloatArray:
-        """Step of the smallest squares along the lines, within reach and bounds.
+        """Step (n,) that minimises the squares of the linear models, inside trust region and bounds.
 
         Unknowns: the step, a bound of each worst deviation, and the largest breach of a limit.
         """
@@ -176,7 +176,7 @@ def _ends(z: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _least_squares(matrix: FloatArray, wanted: FloatArray, rows: FloatArray, least: FloatArray) -> FloatArray:
-    """The x with the smallest |matrix x - wanted| of those with rows x ≥ least; zeros where rounding hides it.
+    """Least-squares solution x of matrix x = wanted with rows x ≥ least; zeros where rounding errors hide it.
 
     By the least distance and its dual. Source: C. L. Lawson and R. J. Hanson (1974), Solving least squares problems,
     chapter 23.

@@ -84,7 +84,7 @@ class Evaluator:
         return derivatives
 
     def goal_values(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """The goal's output at each of its conditions, and of its places, or the ratio of two."""
+        """Values (n,) of the goal's output at its conditions and places, or the ratio of two conditions."""
         chosen = self._chosen(goal, z)
         if goal.places_m is not None:
             return np.concatenate([point.force_at(np.array(goal.places_m)) for point in chosen])
@@ -92,7 +92,7 @@ class Evaluator:
         return values[:1] / values[1:] if goal.ratio else values
 
     def goal_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """Growth of these with the variables, shape (values, variables)."""
+        """Derivatives of `goal_values` with respect to the variables, shape (values, variables)."""
         if goal.places_m is not None:
             place, by_variables = np.array(goal.places_m), self._by_variables(z)
             growths = [[point.force_growth_at(name, place) for name in self.names] for point in self._chosen(goal, z)]
@@ -104,7 +104,7 @@ class Evaluator:
         return rows
 
     def output_growths(self, asked: Sequence[tuple[int, str]], z: FloatArray) -> FloatArray:
-        """Growth of outputs, each at the condition with its number from 0, with each variable, counted as `points`.
+        """Derivatives with respect to the variables of outputs, each with the number of its condition, from 0.
 
         Shape (outputs, variables). Those of all goals are computed together.
         """
@@ -119,6 +119,7 @@ class Evaluator:
         return np.array([known[each] for each in asked])
 
     def _computed_growths(self, asked: Collection[tuple[int, str]], z: FloatArray) -> dict[tuple[int, str], FloatArray]:
+        """Derivatives (variables,) of outputs by number of condition and name, computed mesh by mesh."""
         points, by_variables = self.points(z), self._by_variables(z)
         out: dict[tuple[int, str], FloatArray] = {}
         meshes = dict.fromkeys(points[number].request.model for number, _ in asked)
@@ -129,7 +130,7 @@ class Evaluator:
         return out
 
     def _by_variables(self, z: FloatArray) -> FloatArray:
-        """Growth of the ski's parameters with the variables, shape (variables, parameters)."""
+        """Derivatives of the ski's parameters with respect to the variables, shape (variables, parameters)."""
         # factors of a list of stiffness multiply its rows
         values = zip(self.task.variables, self.values(z).tolist(), strict=True)
         factors = {COMBINED[variable.name][0]: value for variable, value in values if variable.name in COMBINED}
@@ -182,7 +183,7 @@ _BROKEN: Final = 1e9  # value of a design that breaks a limit: above that of eac
 
 
 class Search:
-    """Objective and constraints of a task, in the variables from 0 to 1."""
+    """Objective and constraints of a task as functions of the variables, scaled to 0 to 1 of their bounds."""
 
     def __init__(self, evaluator: Evaluator, goals: Sequence[Goal] | None = None) -> None:
         self.evaluator = evaluator
@@ -201,7 +202,7 @@ class Search:
         return np.asarray(goal.merit_factor * goal.deviations(self.evaluator.goal_values(goal, z)))
 
     def growth(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """Growth of these, shape (values, variables)."""
+        """Derivatives of `values` with respect to the variables, shape (values, variables)."""
         return np.asarray(goal.merit_factor * self.evaluator.goal_growth(goal, z) / goal.scale)
 
     def objective(self, z: FloatArray) -> float:
@@ -218,7 +219,7 @@ class Search:
             return _NO_SKI
 
     def broken(self, z: FloatArray) -> float:
-        """Largest breach of limits and linear constraints, relative."""
+        """Largest relative violation of a limit or a linear constraint; 0 if all hold."""
         matrix, lowest = self.linear
         try:
             rooms = [float(np.min(self.values(goal, z))) for goal in self.limits]
@@ -236,7 +237,7 @@ class Search:
 
 
 def linear_constraints(evaluator: Evaluator) -> tuple[FloatArray, FloatArray]:
-    """Rows a and limits b of a·z ≥ b, each over the size of its limit in the units of the ski file."""
+    """Linear constraints a·z ≥ b of the scaled variables z: rows a and limits b, divided by the largest |a|."""
     task = evaluator.task
     keys = task.ski.keys or {}
 

@@ -184,7 +184,7 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
 
 
 def _digits(value: Any) -> Any:
-    """Numbers with the nine digits of the file, so that the answer is that of the file."""
+    """The value with its numbers rounded to nine digits, as in the ski file."""
     if isinstance(value, list):
         return [_digits(item) for item in value]
     return float(f"{value:.9g}") if isinstance(value, float) else value

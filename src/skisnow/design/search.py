@@ -74,7 +74,7 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
 def searched_starts(
     search: Search, begins: Sequence[FloatArray], progress: Progress | None = None
 ) -> tuple[Start, ...]:
-    """Ends of a search from several starts, the best first; that one is searched on to a smaller tolerance."""
+    """Searches from all starts, the best first, which is continued to a smaller tolerance."""
     starts = []
     for number, begin in enumerate(begins):
         starts.append(_search_from(search, begin, begin, polish=False))
@@ -174,13 +174,14 @@ def write_front(front: Sequence[FrontPoint], folder: Path) -> tuple[Path, ...]:
 
 
 def _limit(goal: Goal, allowed: float, side: float) -> Goal:
-    """The goal as a limit of its deviation on one side."""
+    """The goal's target as a limit: upper (side 1) or lower (side -1), `allowed` times its scale away."""
     curve = goal.factors + side * allowed * np.max(goal.factors)
     most, least = (goal.target, None) if side > 0.0 else (None, goal.target)
     return replace(goal, target=None, at_most=most, at_least=least, curve=tuple(curve.tolist()))
 
 
 def _deviation(evaluator: Evaluator, goal: Goal, z: FloatArray) -> float:
+    """Largest relative deviation of a design from a goal."""
     return float(np.max(np.abs(goal.deviations(evaluator.goal_values(goal, z)))))
 
 

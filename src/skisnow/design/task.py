@@ -85,7 +85,7 @@ class Goal:
         return float(np.sqrt(self.weight)) if self.target is not None else 1.0 if self.at_most is None else -1.0
 
     def deviations(self, values: FloatArray) -> FloatArray:
-        """Relative deviations of values, for each condition those at the places, from the target or limit."""
+        """Relative deviations (n,) of values from the target or limit; at several places, condition by condition."""
         wanted = self.wanted * np.resize(self.factors, len(values))
         return np.asarray((values - wanted) / self.scale)
 
@@ -286,7 +286,7 @@ def _read_constraint(number: int, table: Mapping[str, Any], ski: Ski) -> Constra
 
 
 def _monotone(ski: Ski, key: str) -> list[Constraint]:
-    """A stiffness that rises from the tip to the largest row of the start, and falls behind it."""
+    """Constraints that make a stiffness rise from the tip to the initial ski's largest row and fall behind it."""
     values = (ski.keys or {}).get(key)
     if key not in LISTS or not isinstance(values, list):
         raise ParameterError("monotone: {key} is not a list of stiffness of this ski.").tag("unknown_name", key=key)
@@ -320,7 +320,7 @@ class Variable:
 
 
 def combined_names(name: str) -> tuple[str, ...]:
-    """Ski parameters from whose derivatives that of a variable follows."""
+    """Names of the ski parameters that a variable changes, for its derivative."""
     if name == "sidecut_mm":
         return tuple(f"ski.{key}" for key in COMBINED[name])
     if name in COMBINED:
@@ -336,7 +336,7 @@ def start_value(keys: Mapping[str, Any], name: str) -> float:
 
 
 def designed_keys(keys: Mapping[str, Any], variables: Sequence[Variable], values: Sequence[float]) -> dict[str, Any]:
-    """Keys of the ski file with the values of the variables; combinations act on top of the keys."""
+    """Keys of the ski file with the values of the variables; combined variables change the resulting keys."""
     named = {variable.name: float(value) for variable, value in zip(variables, values, strict=True)}
     out = changed_keys(keys, {name: value for name, value in named.items() if name not in COMBINED})
     for name, value in named.items():
