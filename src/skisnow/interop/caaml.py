@@ -50,7 +50,7 @@ def write_caaml(pit: SnowPit, path: str | Path) -> Path:
 
 
 def caaml_text(pit: SnowPit) -> str:
-    """The text of the file; see `write_caaml`."""
+    """Text of the CAAML file of a snow pit; see `write_caaml`."""
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(_profile_xml(pit)) + "\n"
 
 
@@ -141,7 +141,7 @@ def _temperature_xml(observed: DepthTemperature) -> str:
 
 
 def _extent(layer: SnowLayer | LayerDensity) -> str:
-    """Depth of the top, and the thickness where it is known."""
+    """XML of the depth of the top and, if known, of the thickness."""
     return _cm_xml("depthTop", layer.top) + ("" if layer.thickness is None else _cm_xml("thickness", layer.thickness))
 
 
@@ -164,7 +164,7 @@ def _plate_value(name: str, unit: str, value: PlateValue) -> str:
 
 
 def _nested(path: str, inner: str, **attributes: str) -> str:
-    """Elements within each other, the attributes on the last."""
+    """XML elements within each other, by the names in the path; the innermost has the attributes."""
     *outer, last = path.split("/")
     words = "".join(f" {name}={quoteattr(value)}" for name, value in attributes.items())
     element = f"<caaml:{last}{words}>{inner}</caaml:{last}>"

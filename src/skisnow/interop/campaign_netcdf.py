@@ -32,7 +32,7 @@ MISSING: Final = 9.969209968386869e36
 class _Variable:
     """A column: name, dimension, values (numbers, whole numbers or texts), unit and meaning.
 
-    `sample_of` is the dimension of readings that the values count, for a ``row_size``.
+    `sample_of`: for a ``row_size``, the dimension of the readings that it counts; otherwise empty.
     """
 
     name: str
@@ -164,6 +164,7 @@ def _text_variables(dimension: str, **columns: Sequence[str]) -> Iterator[_Varia
 
 
 def _snow_of(dimension: str, density: npt.NDArray[Any], cone_depth: npt.NDArray[Any]) -> Iterator[_Variable]:
+    """Columns of snow density and drop-cone depth at each experiment."""
     yield _Variable(f"{dimension}_snow_density", dimension, density, "kg m-3", "density of the snow at the experiment")
     yield _Variable(f"{dimension}_drop_cone_depth", dimension, cone_depth, "m", "drop-cone depth at the experiment")
 
@@ -174,7 +175,7 @@ def _row_size_variable(dimension: str, reading: str, first: IntArray) -> _Variab
 
 
 def _further(dimension: str, columns: Mapping[str, Sequence[str]]) -> Iterator[_Variable]:
-    """Columns of the file that skisnow does not interpret, as text."""
+    """Text columns of a table that skisnow does not interpret."""
     for number, (heading, cells) in enumerate(columns.items(), start=1):
         yield _Variable(f"{dimension}_further_{number}", dimension, cells, "", heading)
 

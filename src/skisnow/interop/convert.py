@@ -230,7 +230,7 @@ def _recording_as_csv(source: Path, target: Path, options: ConvertOptions) -> No
 
 
 def _completed(pit: SnowPit, options: ConvertOptions) -> SnowPit:
-    """The pit with the options for values that it lacks."""
+    """The pit with snow height and time of the options where it lacks them."""
     height = options.snow_height if pit.snow_height is None else pit.snow_height
     return replace(pit, snow_height=height, time=pit.time or options.time or "")
 

@@ -75,7 +75,7 @@ def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> P
 
 
 def rigid_ski_geoms(ski: Ski, *, segments: int = SEGMENTS) -> str:
-    """Boxes of an unbent ski around its boot, without mass, to be seen in a body of one's own."""
+    """MJCF boxes of an unbent ski around its boot, without mass, to show it on a body of the user's model."""
     places = np.linspace(float(ski.station[0]), float(ski.station[-1]), segments + 1)
     return "\n".join(_box_xml(ski, near, far) for near, far in pairwise(places.tolist()))
 

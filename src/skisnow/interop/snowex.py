@@ -183,7 +183,7 @@ def sites_of(campaign: Campaign) -> tuple[str, ...]:
 
 
 def _tables_with_sites(campaign: Campaign) -> Iterator[tuple[tuple[str, ...], Mapping[str, tuple[str, ...]]]]:
-    """Site and further columns of each row of each table."""
+    """Site of each row, and further columns by name, of each table of the campaign."""
     if campaign.penetration is not None:
         tests = campaign.penetration
         yield tuple(tests.site[index] for index in tests.series_of_reading.tolist()), tests.further
@@ -200,7 +200,7 @@ def _cells_of_site(campaign: Campaign, site: str, column: str) -> Iterator[str]:
 
 
 def _station_air(analysis: Analysis, site: str) -> float | None:
-    """Mean at the site's experiments by the weather station; None where it is not known."""
+    """Mean air temperature (°C) of the weather station at the site's experiments; None if unknown."""
     site_means = () if analysis.weather is None else analysis.weather.site_means()
     mean = next((means["air_temperature_C"] for name, _, means in site_means if name == site), math.nan)
     return mean if math.isfinite(mean) else None

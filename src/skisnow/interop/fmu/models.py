@@ -24,13 +24,13 @@ SIDES: Final = ("left", "right")
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A model before it is packed.
+    """Variables and data of an FMU before it is written.
 
-    name, about: as the importing program shows them.
+    name, about: name and description that the importing program shows.
     variables: in the order of their references.
-    data: data of the core.
-    step: that an importer may begin with (s).
-    serializes: whether its states can be stored as bytes.
+    data: text that the compiled core reads.
+    step: default step of the importing program (s).
+    serializes: True if its states can be stored as bytes.
     """
 
     name: str
@@ -42,14 +42,14 @@ class Model:
 
 
 def axes_of(scenario: Scenario) -> str:
-    """The axes of places and forces, in words."""
+    """Sentence on the axes of places and forces of an FMU."""
     if isinstance(scenario.slope, Plane):
         return "Axes of the slope: x down the fall line, y to the left, z out of the snow."
     return "Axes: x horizontal down the slope, y to the left, z upwards."
 
 
 def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
-    """Rigid skis in the snow of a scenario, at first where its sledge would be set down."""
+    """FMU model of rigid skis in the snow of a scenario; they start where its sledge would be set down."""
     setup = laid_out(scenario)
     _require_own_laws(setup.snow)
     sides = SIDES if skis == len(SIDES) else ("ski",)
@@ -78,7 +78,7 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
 
 
 def sledge_model(scenario: Scenario, *, step: float) -> Model:
-    """The sledge of a scenario on its flexible skis; with a skier its boots move."""
+    """FMU model of a scenario's sledge on its flexible skis; with a skier the boots' poses are inputs."""
     if scenario.boots is not None:
         raise ParameterError("boots.file: an FMU gets the motion of its boots as inputs; remove boots.file").tag(
             "not_supported"
@@ -130,7 +130,7 @@ def _require_own_laws(snow: SnowField) -> None:
 
 
 def _quaternion(rotation: FloatArray) -> FloatArray:
-    """W, x, y, z of axes as columns."""
+    """Quaternion (w, x, y, z) of a rotation matrix."""
     return np.roll(Rotation.from_matrix(rotation).as_quat(canonical=True), 1)
 
 
@@ -149,7 +149,7 @@ def _snow_parameters(snow: SnowField) -> tuple[Variable, ...]:
 
 
 def _pose_variables(name: str, place: FloatArray, axes: FloatArray) -> list[Variable]:
-    """Inputs whose names begin so: place (m) of a boot, axes of its ski as columns, and their rates."""
+    """Inputs with this prefix: place (m) of a boot, quaternion of the ski's axes (columns), and velocities."""
     about = "w, x, y, z: ahead, left across the base, off it"
     return [
         *vector(f"{name}position", "input", "m", "of the boot", place),
@@ -177,14 +177,14 @@ UNITS: Final[dict[str, dict[str, int]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One number that goes in or out.
+    """A number that the FMU exchanges with the importing program.
 
     name: by the standards' structured convention: ``left.force[1]``.
-    causality: whether it is the time, a parameter, an input or an output.
+    causality: time, parameter, input or output.
     unit: a key of `UNITS`.
     about: description.
     start: its value before anything is set.
-    offered: whether the model description names it; its reference is used in either case.
+    offered: True if the model description lists it; it has a reference number in either case.
     """
 
     name: str

@@ -60,7 +60,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
 
 
 def _require(path: str | Path, fmi: int) -> None:
-    """Raise errors of the inputs before the work."""
+    """Reject a path without the ending .fmu, an unknown FMI version, or a platform other than Linux on x86-64."""
     require_ending(path, ENDING)
     if fmi not in FOLDERS:
         raise ParameterError("fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard").tag(
@@ -109,7 +109,7 @@ _STATE: Final = {
 
 
 def description(model: Model, token: str, *, fmi: Version) -> bytes:
-    """The file, as one of the two standards has it."""
+    """Contents of modelDescription.xml for FMI 2.0 or 3.0; `token` identifies the model."""
     head = {
         "fmiVersion": f"{fmi}.0",
         "modelName": model.name,

@@ -206,7 +206,7 @@ _LAST_COUNTED: Final = 65_535
 
 @dataclass(frozen=True, slots=True)
 class C3dContent:
-    """Points and parameters of a C3D file.
+    """Points and parameters in the bytes of a C3D file.
 
     parameters: values by group and name, both in capitals.
     rate: frames a second (Hz).
@@ -221,7 +221,7 @@ class C3dContent:
 
 
 def c3d_content(data: bytes) -> C3dContent:
-    """Read a file's bytes.
+    """Parse the bytes of a C3D file.
 
     Raises ParameterError: the file is damaged, cut off, or not in this format; the message does not name it.
     """

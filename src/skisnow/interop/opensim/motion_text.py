@@ -36,8 +36,8 @@ class MotionTable(Shown):
     time: (n,), rising (s).
     columns: columns by name, (n,) each; the name states the quantity.
     in_degrees: True if angles are in degrees (default: False, radians, as OpenSim reads a file without a statement).
-    name: that the head begins with.
-    head: other keys of the head, as they are there.
+    name: first line of the file's header.
+    head: other keys of the header with their values.
     Raises ParameterError: a column has not a number for each time, or times do not rise.
     """
 
@@ -222,7 +222,7 @@ def read_trc(path: str | Path) -> Markers:
 
 
 def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> list[float]:
-    """Time, then three numbers for each marker, NaN in an empty cell; the number of the frame is left out."""
+    """Time and three coordinates of each marker in a line of a .trc file; NaN for an empty cell."""
     cells = [cell.strip() for cell in line.split("\t")]
     wanted = 2 + 3 * len(names)
     cells += [""] * (wanted - len(cells))
@@ -338,7 +338,7 @@ def _unit_vectors(vectors: FloatArray, of: BootMarkers) -> FloatArray:
 
 
 def boots_text(boots: Boots, *, edge_angles_only: bool = False) -> str:
-    """Poses in the slope's frame as the text of a CSV file for ``boots.file``.
+    """CSV text for ``boots.file`` of poses in the slope's frame.
 
     boots: as `boots_of_markers` gives them.
     edge_angles_only: only edge angles; the boots then move with the scenario's sledge.
