@@ -77,7 +77,7 @@ SAME_TIME: Final = 1e-9
 
 @dataclass(slots=True)
 class BootDrive:
-    """Boots moved by a control."""
+    """Calls the control of the boots at its period, and moves the boots to the poses that it returns."""
 
     control: BootControl
     held: bool = False
@@ -135,7 +135,7 @@ class BootDrive:
 
 @dataclass(slots=True)
 class StrengthDrive:
-    """Shear strength that varies along the path: its share of S_f by the distance run (m)."""
+    """Updates the shear strength along the path: `share` gives its share of S_f at the distance run (m)."""
 
     share: Callable[[float], float]
     snow: SnowField
@@ -177,7 +177,7 @@ class TableControl:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class BootHistory(Shown):
-    """Index 0 the time (n), 1 the boot (0 left, 1 right).
+    """Boots over time; index 0 is the time (n), index 1 the boot (0 left, 1 right).
 
     place: (n, 2, 3) in the slope's axes (m).
     axes: (n, 2, 3, 3): ahead, left across the base, off the base, as rows in the slope's axes.

@@ -218,7 +218,7 @@ class Run(Shown):
     def report(self, folder: str | Path) -> Path:
         """Write the files of ``skisnow simulate --out``: summary.json, track.csv, run.nc, figures/ and report.html.
 
-        Returns: Of report.html.
+        Returns: Path of report.html.
         Raises OutputError: a file cannot be written.
         """
         from ..report.run.page import write_run

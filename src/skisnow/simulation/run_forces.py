@@ -61,7 +61,7 @@ def balance_of(run: Run) -> BalanceHistory:
 
 
 def _pressure(boots: BootHistory, ahead: FloatArray, load: FloatArray) -> FloatArray:
-    """Centre of pressure from the middle of the boots, to the left (m)."""
+    """Distance (m) of the centre of pressure from the middle of the boots, to the left; NaN without load."""
     arm = boots.place - boots.place.mean(axis=1, keepdims=True)
     moment = (np.cross(arm, boots.force) + boots.moment).sum(axis=1)
     roll = np.einsum("na,na->n", moment, ahead)

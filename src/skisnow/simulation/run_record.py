@@ -39,7 +39,7 @@ class Moment(NamedTuple):
 
 @dataclass(slots=True)
 class Record:
-    """The moments stored so far."""
+    """Moments of a run in progress, stored one after the other."""
 
     setup: Setup
     run_length: float = 0.0
@@ -121,7 +121,7 @@ class Record:
         return replace(skis, force=snow_forces(skis, pushes, boots, normal=normal, ski=scenario.flexing_ski))
 
     def _boots(self, parts: Mapping[str, FloatArray]) -> BootHistory:
-        """The boots in space."""
+        """History of place, axes and loads of both boots, in the slope's axes."""
         forward, height = self.setup.scenario.sledge.centre_of_mass
         origin, axes, boots, wrench = (parts[name] for name in ("position", "rotation", "boots", "boot_wrench"))
         return BootHistory(
@@ -133,7 +133,7 @@ class Record:
         )
 
     def _moved_tracks(self, boots: BootHistory, depth: FloatArray) -> FloatArray:
-        """The same of boots that move: (n, 2, 3)."""
+        """Tracks (n, 2, 3) as of `_tracks`, for boots that move against the sledge."""
         scenario, at_boot = self.setup.scenario, self.setup.scenario.ski.at(0.0)
         left, off = boots.axes[:, :, 1], boots.axes[:, :, 2]
         side = side_of_load(left[..., 2], depth, float(at_boot.width))

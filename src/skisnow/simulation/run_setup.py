@@ -59,7 +59,7 @@ _UP: Final = np.array([0.0, 0.0, 1.0])
 
 @dataclass(slots=True)
 class Setup:
-    """State of a run in progress."""
+    """A run in progress: its scenario, dynamics, snow, beam nodes (m), solver choices, and drives."""
 
     scenario: Scenario
     dynamics: Dynamics
@@ -181,7 +181,7 @@ class Setup:
         return bool(np.any(tips < low) or np.any(tips > high) or aside > SET_DOWN)
 
     def residual_depth(self, deepest: FloatArray) -> FloatArray:
-        """Depth (m) of the groove that is left where the snow was pressed to a deepest one."""
+        """Depth (m) of the groove that remains where the snow was pressed to the depths `deepest` (m)."""
         law = self.snow.penetration
         ratio = 1.0 - 1.0 / self.scenario.contact.unloading_ratio
         return deepest * ratio if law is None else law.residual_depth(deepest)
@@ -339,7 +339,7 @@ def _snow_field(scenario: Scenario, laws: Laws) -> SnowField:
 
 
 def _strength_share(snow_map: SnowMap | None) -> float | Grid:
-    """S_f over the place over its mean."""
+    """S_f of the snow map over its mean, at each place; 1 without a map of S_f."""
     if snow_map is None or snow_map.failure_shear_stress is None or snow_map.mean_stress is None:
         return 1.0
     grid = snow_map.failure_shear_stress

@@ -47,7 +47,7 @@ def track_table(run: Run) -> FloatArray:
 
 
 def track_csv(run: Run) -> str:
-    """The table as text: numbers with all their digits, nothing where a number does not exist."""
+    """Text of track.csv: numbers with all their digits, empty cells for numbers that do not exist."""
     rows = ([repr(cell) if math.isfinite(cell) else "" for cell in row] for row in track_table(run).tolist())
     return csv_text(chain([track_columns(run)], rows))
 
@@ -81,7 +81,7 @@ def boots_columns(run: Run) -> dict[str, FloatArray]:
 
 
 def opensim_columns(run: Run) -> dict[str, FloatArray]:
-    """The same with ``time``, and behind them force, its place, and moment of each ski in the axes of OpenSim's ground.
+    """Columns of `boots_columns` with ``time``, then force, its place and moment of each ski in OpenSim's axes.
 
     ``left_ski_force_vx``, ``left_ski_force_px`` and ``left_ski_moment_mx`` and so on: external loads for OpenSim.
     """
@@ -96,10 +96,10 @@ def opensim_columns(run: Run) -> dict[str, FloatArray]:
 
 
 def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
-    """The table as a file's text: numbers with all their digits.
+    """Text of a file with the boots' poses and loads over time, with all digits.
 
     ending: one of `ENDINGS`.
-    name: that the head of a .mot or .sto file begins with.
+    name: first line of the header of a .mot or .sto file.
     """
     columns = boots_columns(run) if ending == ".csv" else opensim_columns(run)
     rows = np.column_stack(list(columns.values())).tolist()

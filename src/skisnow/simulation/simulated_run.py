@@ -230,7 +230,7 @@ def _warn_of_friction(run: Run) -> None:
 
 @dataclass(slots=True)
 class _Watch:
-    """End of a run by its motion, checked at the times of its drives, or without drives at its outputs."""
+    """Checks during a run whether it ends (fall, end of slope or course); called when a drive or an output is due."""
 
     setup: Setup
     outcome: Outcome | None = None
@@ -258,7 +258,7 @@ class _Watch:
 
 
 def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
-    """Go from output to output until something ends the run."""
+    """Advance from output to output until the run ends; returns its outcome."""
     stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
     duration = math.inf if stop.duration is None else stop.duration
     length = math.inf if stop.length is None else stop.length
@@ -302,7 +302,7 @@ def _outcome_now(setup: Setup, flying: float) -> Outcome | None:
 
 
 def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) -> Run:
-    """The run; its outcome is `energy_open` if too much energy is unaccounted for."""
+    """Result of a run; the outcome becomes `energy_open` if too much energy is unaccounted for."""
     steps, rejected, *_ = setup.dynamics.counts
     run = Run(
         scenario=setup.scenario,
@@ -329,14 +329,14 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
 
 
 def _cause(run: Run, records: Sequence[BalanceRecord]) -> list[Message]:
-    """The first limit that the skier crossed before the last of the records, if any."""
+    """Sentence on the first limit that the skier exceeded within the records; empty if none."""
     skier, weight = run.scenario.skier, run.scenario.sledge.mass * run.scenario.gravity
     cause = None if skier is None else cause_of(records, skier, weight)
     return [] if cause is None else [cause.message]
 
 
 def _through_gates(run: Run, records: Sequence[BalanceRecord] = ()) -> Run:
-    """A run that ends well, but not through all gates of its course, missed or straddled one."""
+    """The run; if it missed or straddled a gate of its course, with that outcome instead."""
     result = run_gates(run)
     fault = None if result is None else result.fault
     if fault is None:

@@ -133,7 +133,7 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
 
 
 def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
-    """The part of `verify` that makes the solver finer."""
+    """Repetitions of a run with a finer solver, one setting at a time; a part of `verify`."""
     refinements: list[Refinement] = []
     for key, solver in refined_solvers(run).items():
         finer = simulate(replace(run.scenario, solver=solver))
@@ -165,7 +165,7 @@ def limit_warnings(run: Run, refinements: Iterable[Refinement]) -> tuple[str, ..
 
 
 def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...]:
-    """The sentence of `limit_warnings`, from distances (m) by key, where those of `NUDGED` count, and a length (m)."""
+    """Warning of `limit_warnings` from the shifts (m) of the end by key and the run's length (m); () if none."""
     worst = max((key for key in moves if key in NUDGED), key=lambda key: moves[key], default=None)
     if worst is None or not moves[worst] > NEAR * NUDGE * length:
         return ()
