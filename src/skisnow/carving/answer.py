@@ -59,7 +59,7 @@ def answer_question(question: CarveQuestion, *, sources: Sources | None = None) 
 
 
 def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
-    """The snow of a question."""
+    """Snow of a question: named by its words, or of its numbers."""
     if question.H_V_N_per_mm3 is not None:
         stress = question.S_f_N_per_mm2
         return SnowProperties(
@@ -182,7 +182,7 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
 
 
 def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:
-    """Every input with the value in force, that of the snow's numbers too; an infinite unloading ratio as computed."""
+    """Every input of the question with its value in use, also of a named snow; inf as the ratio that was computed."""
     inputs = answer.question.as_dict()
     ratio, stress = inputs["unloading_ratio"], answer.snow.failure_shear_stress
     return inputs | {
@@ -193,7 +193,7 @@ def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:
 
 
 def _in_unit(stated: float | None, value: float | None, unit: float) -> float | None:
-    """The number as given: there and back over the unit could change its last digit."""
+    """The number as stated, else the SI value in this unit; a conversion there and back could change the last digit."""
     return stated if stated is not None or value is None else value / unit
 
 

@@ -69,7 +69,7 @@ def require_strength(snow: SnowProperties) -> None:
 
 
 def unloading_ratio_of(snow: SnowProperties, stated: float | None) -> float:
-    """k_u/H_V as stated, else that of the snow; an error without either."""
+    """The stated k_u/H_V, else that of the snow; ParameterError if both are missing."""
     ratio = snow.unloading_ratio if stated is None else stated
     if ratio is None:
         raise ParameterError(

@@ -26,7 +26,7 @@ _STRAIGHT: Final = 1e-9  # m, sagitta below which a line has no radius
 
 
 class MedianCircles(NamedTuple):
-    """Median radius (m), places (3, k) of the circles near it, its growth with their radii and both stations."""
+    """Median radius (m), points (3, k) of the circles near it, its derivatives by their radii and both end stations."""
 
     radius: float
     places: FloatArray
@@ -170,7 +170,7 @@ class EdgeLine:
 def sections_at(
     model: ClampedSki, stations: tuple[float, ...]
 ) -> tuple[FloatArray, FloatArray, tuple[IntArray, FloatArray, FloatArray]]:
-    """Width, height of the unloaded base, and the rows of the beam at stations (m); those about the boot recur."""
+    """Width, height of the unloaded base (m), and `beam_rows` at stations (m); cached for repeated stations."""
     ski = model.ski
     width, height = (np.interp(stations, ski.station[::-1], table[::-1]) for table in (ski.width, ski.base_height))
     return width, height, beam_rows(model, stations)

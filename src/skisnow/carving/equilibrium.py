@@ -263,7 +263,7 @@ def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: ob
 
 
 def _with_laws(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
-    """The conditions with laws; with a penetration law also the linear snow from which the search begins."""
+    """The conditions with laws; a penetration law adds linear snow (H_V, k_u), from which the search begins."""
     if laws is None or laws.penetration is None:
         return conditions._replace(laws=laws)
     hardness, ratio = equivalent_snow(laws.penetration, ski, conditions.edge_angle, conditions.load)

@@ -42,7 +42,7 @@ class PressureLaw(PressureCallback):
 
 
 class StrengthLaw:
-    """Failure stress of a law over that at one depth and the boot's edge angle, for arrays; `refused` as above."""
+    """Shear law relative to its stress at one depth and the boot's edge angle; `refused` as in `PressureLaw`."""
 
     def __init__(self, law: ShearLaw, edge_angle: float) -> None:
         self._callback = StrengthCallback(law)
@@ -50,7 +50,7 @@ class StrengthLaw:
         self.refused: Message | None = None
 
     def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Stress at depths (m), 0 at depths that are not positive, and at edge angles (rad)."""
+        """Failure stress over the reference stress at depths (m) and edge angles (rad); 0 for depths of 0 or less."""
         share = self._callback(depth, edge_angle)[0] / self._unit
         self.refused = self.refused or self._callback.refused
         return share
@@ -133,6 +133,7 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
 
 
 def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
+    """Reject a shear law with a thrust, or without a finite strength above 0, at an edge angle (rad)."""
     depth = np.array([_SOME_DEPTH, 5.0 * _SOME_DEPTH, 20.0 * _SOME_DEPTH])
     stress, thrust = law.stress_and_thrust(depth, np.full(3, edge_angle))
     degrees = math.degrees(edge_angle)

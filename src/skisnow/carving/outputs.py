@@ -36,7 +36,7 @@ class CarveRequest:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OutputGrowth:
-    """An output, and its derivatives by each of the numbers that it is computed from, all others held.
+    """An output, and its partial derivatives by each quantity that it is computed from.
 
     value: The output.
     depth, force, weight, place: By depth (m) and force (N/m) of the stations, their length and place (m); None: none.
@@ -73,9 +73,9 @@ class OutputGrowth:
 
 
 def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Radii of circles through front, boot and rear (m), and their derivatives by these x and y, all (3, k).
+    """Radii (k,) of circles through front, boot and rear points (m), and their derivatives by x and by y, (3, k) each.
 
-    It is -a b c/(2 T), of the sides a, b, c and twice the area T: each factor adds its relative growth.
+    The radius is -a b c/(2 T), with the sides a, b, c and twice the area T of the triangle.
     """
     twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
     by_x = -np.array([y[1] - y[2], y[2] - y[0], y[0] - y[1]]) / twice_area
@@ -94,7 +94,7 @@ def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArr
 def _radius_over(
     at: CarveRequest, x: FloatArray, weight: float | FloatArray = 1.0, *, moves: bool = False
 ) -> tuple[OutputGrowth, FloatArray] | None:
-    """Derivatives of the radii of circles through the edge at (3, k) places, times a weight, and by the places."""
+    """Radius of the circles through the edge at places (3, k), its weighted derivatives, and those by the places."""
     angle = at.conditions.edge_angle
     line = EdgeLine(at.model, angle, at.solution)
     width, height, deflection, twist = sections = line.sections(x.ravel())
@@ -146,7 +146,7 @@ def _radius_median(at: CarveRequest) -> OutputGrowth | None:
 def _with_ends(
     growth: OutputGrowth, ends: tuple[OutputGrowth, OutputGrowth], by_front: float, by_rear: float
 ) -> OutputGrowth:
-    """Derivatives with the part of the moving ends of the contact."""
+    """The output's derivatives plus those through both ends of the contact, which move with depth and place."""
     depth, place = (
         np.asarray(by_front * getattr(ends[0], name) + by_rear * getattr(ends[1], name)) for name in ("depth", "place")
     )
@@ -181,6 +181,7 @@ def _contact_length(at: CarveRequest) -> OutputGrowth | None:
 
 
 def _mask_of_largest(values: FloatArray) -> FloatArray:
+    """Array that is 1 at the largest value and 0 elsewhere."""
     return np.asarray(np.eye(1, len(values), int(np.argmax(values)))[0])
 
 

@@ -79,7 +79,7 @@ class _ParameterDerivatives:
     shape: Shape | None = None
 
     def columns(self, model: ClampedSki) -> FloatArray:
-        """Derivatives of the stations' place, weight, width, base height, and of their element's length over itself."""
+        """Derivatives of place, weight, width and base height of the stations, and of ln(element length)."""
         if self.shape is None:
             return np.zeros((5, len(model.stations.station)))
         stretch = self.shape.length / (model.node[:-1] - model.node[1:])
@@ -92,8 +92,8 @@ class _ParameterDerivatives:
 class _Gradient:
     """An output, and its derivatives by the numbers of the equations.
 
-    With columns of the stations, and the core's numbers; `adjoint`: of the beam; `by_tables`: with the tables of the
-    ski, where they were computed.
+    `columns`: by place, weight, width, base height of the stations; `numbers`: by the conditions; `adjoint`: adjoint
+    unknowns of the beam; `by_tables`: by the ski's tables, None before they are computed.
     """
 
     output: OutputGrowth
@@ -174,7 +174,7 @@ class CarveDerivatives:
         return tuple(out)
 
     def _beside(self, name: str, change: float, output: str) -> float | None:
-        """Derivative where the parameter is a little changed; None without an equilibrium or output there."""
+        """Derivative of an output after a relative change of the parameter; None without equilibrium or output."""
         if (name, change) not in self._neighbours:
             self._neighbours[name, change] = self._moved(name, change)
         neighbour = self._neighbours[name, change]
@@ -323,6 +323,7 @@ class CarveDerivatives:
         return gradient.by_tables
 
     def _growth(self, name: str) -> tuple[FloatArray, tuple[float, float, float], FloatArray, FloatArray, float]:
+        """Derivatives by a parameter of unknowns, boot depth, slope and shear, edge depth, force; and kink distance."""
         direction, model = self._direction(name), self.request.model
         bent = np.zeros(model.size)
         if direction.shape is not None:

@@ -55,7 +55,7 @@ class Shape:
 
 
 class _Lines(NamedTuple):
-    """Places on the straight lines between two rows of a ski's tables; `ends`: both rows of each, in two tables."""
+    """Linear interpolation between the rows of a ski's tables at some places; `ends`: indices of both rows of each."""
 
     row: IntArray
     share: FloatArray
@@ -68,19 +68,19 @@ class _Lines(NamedTuple):
         return np.asarray(here + self.share * (table.take(self.row + 1, axis=-1) - here))
 
     def by_parameter(self, table: FloatArray, station_rate: FloatArray, place_rate: FloatArray) -> FloatArray:
-        """Derivatives of `along(table)` by a parameter; rates: those of the table's stations and of the places."""
+        """Derivatives of `along(table)` by a parameter that moves stations and places at these rates."""
         share = (self.along(station_rate) - place_rate) / self.spacing
         return np.asarray(share * (table[..., self.row + 1] - table[..., self.row]))
 
     def to_rows(self, by_value: FloatArray, rows: int) -> FloatArray:
-        """Derivatives by one or two tables, from that with their values at the places: the transpose of `along`."""
+        """Derivatives by the rows of one or two tables, from those by the values at the places (`along`)."""
         tables = len(by_value)
         pair = np.concatenate([(1.0 - self.share) * by_value, self.share * by_value], axis=1)
         ends = self.ends[: tables * pair.shape[1]]
         return np.asarray(np.bincount(ends, pair.ravel(), tables * rows), float).reshape(tables, rows)
 
     def by_station(self, table: FloatArray, by_value: FloatArray) -> FloatArray:
-        """Derivatives by the table's stations at the places; by the places: negative. Transpose of `by_parameter`."""
+        """Derivatives by the station of the table at each place; transpose of `by_parameter`."""
         return np.asarray(np.sum(by_value * (table[:, self.row + 1] - table[:, self.row]), axis=0) / self.spacing)
 
 
@@ -103,7 +103,7 @@ def _mesh(station: bytes, clamp_length: float, elements: int) -> _NodesAndLines:
 
 
 def _table_lines(station: bytes, place: FloatArray) -> _Lines:
-    """Rows of a table, by the bytes of its stations, between which places are interpolated."""
+    """Interpolation at places (m) in a table with these stations (bytes of floats, falling)."""
     rows = np.frombuffer(station)
     row = np.clip(np.searchsorted(-rows, -place, side="right") - 1, 0, len(rows) - 2)
     spacing, pair = rows[row] - rows[row + 1], np.concatenate([row, row + 1])
@@ -144,7 +144,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
 
 @functools.lru_cache(maxsize=512)
 def _fixed_shape(growth: TableGrowth, station: bytes, clamp_length: float, elements: int, widest: int) -> Shape:
-    """Derivatives of the shape on fixed places between fixed rows."""
+    """Derivatives of the shape by a parameter that changes values of the tables, but no stations."""
     mesh, tables = _mesh(station, clamp_length, elements), growth.tables
     widens, stiffens = bool(tables[1:3].any()), bool(tables[3:].any())
     stations = len(mesh.stations.row)
@@ -166,11 +166,11 @@ def widest_station(ski: Ski, clamp_length: float, elements: int) -> int:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeGradient:
-    """Derivatives of an output by the numbers of the equations that shape and stiffness of a ski give.
+    """Derivatives of an output by the quantities in the equations that come from the ski's shape and stiffness.
 
-    `stations`: with place, weight, width, height of the base, and the lengths of both elements' slopes over themselves
-    (6, 2 n); `stiffness`: with EI and GJ at the Gauss points (2, n, 4); `widest`: with the greatest width; `edge`,
-    `by_edge`: places of the edge, and growth with width, height, deflection and twist there (4, k).
+    `stations`: by place, weight, width, height of the base, and ln(length) of the elements of the slopes (6, 2 n);
+    `stiffness`: by EI and GJ at the Gauss points (2, n, 4); `widest`: by the greatest width; `edge`, `by_edge`: places
+    of the edge (m), and derivatives by width, height, deflection and twist there (4, k).
     """
 
     stations: FloatArray
@@ -196,7 +196,7 @@ class ShapeGradient:
         return out
 
     def _by_stations(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """Derivatives by the stations of the ski's tables (rows,): places move, elements lengthen, lines shift."""
+        """Derivatives by the stations of the ski's tables (rows,), through moved places and lengthened elements."""
         ski, half = model.ski, model.clamp_length / 2.0
         mesh, rows = _mesh(ski.station.tobytes(), model.clamp_length, elements), len(ski.station)
         shape, stiffness = (
@@ -240,7 +240,7 @@ class ShapeGradient:
 
 
 def _by_stretch(model: ClampedSki, stiffness: FloatArray, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-    """Derivatives of λ·K u by each element's length over itself: shapes of curvature fall as 1/ℓ², of slopes as 1/ℓ."""
+    """Derivatives of λ·K u by the logarithm of each element's length; curvature shapes fall as 1/ℓ² and 1/ℓ."""
     length, curvature = _curvature(model)
     falls = -np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
     (own, turn), (back, turn_back) = (curvature_and_turn(model, unknowns) for unknowns in (u, adjoint))
@@ -262,7 +262,7 @@ def _curvature_between(nodes: bytes) -> tuple[FloatArray, FloatArray]:
 
 
 def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
-    """Derivatives of the beam's elastic forces at the same unknowns (size,)."""
+    """Derivatives (size,) of the beam's elastic forces by the parameter of `growth`, at constant unknowns u."""
     out, lengthens = np.zeros(model.size), growth.moves
     if not (lengthens or growth.stiffens):
         return out

@@ -21,7 +21,7 @@ _NEAR: Final = 1e-4  # m, over which the first guess takes the slope of the base
 
 
 class Conditions(NamedTuple):
-    """Snow, load and modelling choices, in SI."""
+    """Snow, load and modelling choices of an equilibrium, in SI and rad."""
 
     edge_angle: float
     hardness: float
@@ -116,7 +116,7 @@ def _core_ski(model: ClampedSki) -> core.CarvedSki:
 
 @functools.lru_cache(maxsize=16)
 def _mesh_rows(nodes: bytes, dofs: bytes) -> tuple[FloatArray, int]:
-    """Rows of the stations for the core, without width and height of the base, and unknowns before the clamp.
+    """Array of the stations for the core, width and height of the base left 0, and number of unknowns before the clamp.
 
     The first unknown is that of the station's element; six held unknowns are between those before and behind the clamp.
     """
