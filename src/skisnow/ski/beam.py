@@ -307,7 +307,7 @@ def _make_mesh(
 
 
 def element_places(node: FloatArray, local: FloatArray) -> FloatArray:
-    """Places (m) at local coordinates of each element, (elements, k); for node growths, the growths of the places."""
+    """Places (m), (elements, k), at local coordinates of each element; with rates of the nodes, rates of the places."""
     return np.asarray(node[:-1, None] - (node[:-1] - node[1:])[:, None] * local)
 
 
@@ -317,7 +317,7 @@ def model_nodes(front: float, rear: float, clamp_length: float, elements: int) -
 
 
 def beam_rows(model: ClampedSki, station: npt.ArrayLike) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Numbers of the unknowns at stations (m), below 0 if held, and how they move deflection and twist there."""
+    """Numbers of the unknowns at stations (m), -1 if held, and shape functions of deflection and twist, (k, 6) each."""
     where = np.atleast_1d(np.asarray(station, float))
     element = np.clip(np.searchsorted(-model.node, -where, side="right") - 1, 0, len(model.dof) - 1)
     length = model.node[element] - model.node[element + 1]

@@ -70,7 +70,7 @@ def edit_stations(ski: Ski, *, count: int = 9) -> FloatArray:
 
 
 def _plain(station: FloatArray) -> FloatArray:
-    """Without digits below a nanometre, so that the boot is at 0 and not a little behind it."""
+    """Stations rounded to a nanometre, so that the boot is at exactly 0."""
     return np.asarray(np.round(station, 9) + 0.0)
 
 
@@ -282,7 +282,7 @@ def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatAr
 
 
 def _of_edit(ski: Ski, name: str) -> TableGrowth:
-    """Derivatives by a factor, or by the value of a curve at one of the `edit_stations`."""
+    """Derivatives of a ski's tables by a factor, or by the value of a curve at one of the `edit_stations`."""
     if name == SIDECUT:
         return _growth_of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
     if name in EDITED_COLUMNS:
@@ -298,7 +298,7 @@ def _of_edit(ski: Ski, name: str) -> TableGrowth:
 
 
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
-    """Derivatives by a key that changes several tables, or numbers."""
+    """Derivatives of a ski by a key that changes several tables, or numbers; `step` of the differences."""
     parsed, memos, key = parsed_keys(ski), _growth_caches(ski), name.removeprefix("ski.")
     tables, numbers = np.zeros((len(_TABLES), len(ski.station))), np.zeros(len(_NUMBERS))
     if key in _OF_NUMBERS:
@@ -341,6 +341,7 @@ def _growth_caches(ski: Ski) -> dict[str, dict[str, Any]]:
 
 @functools.lru_cache(maxsize=64)
 def _growth_cache(*_keys: Hashable) -> dict[str, Any]:
+    """An empty cache, the same one for equal keys."""
     return {}
 
 
@@ -350,6 +351,7 @@ def _tip_end_ratio(keys: SkiFile) -> float | None:
 
 
 def _growth_of_table(table: str, growth: FloatArray) -> TableGrowth:
+    """Derivatives of a ski of which a parameter changes only one table."""
     tables = np.zeros((len(_TABLES), len(growth)))
     tables[_TABLES.index(table)] = growth
     return TableGrowth(tables, np.zeros(len(_NUMBERS)))
@@ -371,7 +373,7 @@ def _outline_of(keys: SkiFile, layout: Layout) -> ArcOutline:
 
 
 def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArray:
-    """Widths at stations (m) that the widths of tip, waist and tail are multiplied by, shape (3, n)."""
+    """Factors (3, n) of the widths of tip, waist and tail, whose sum is the width at stations (m)."""
     pairs = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
     relative = replace(keys, tip_width=1.0, tip_end_width=_tip_end_ratio(keys))
     skis = [replace(relative, waist_width=waist, tail_width=tail) for waist, tail in pairs]
@@ -399,7 +401,7 @@ def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
 
 
 def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: FloatArray) -> FloatArray:
-    """Derivatives of the stations, and of a table on them, for the width of its three units, by a key."""
+    """Derivatives of stations and table `part` (or the three unit widths) by a key, by central differences."""
     home, ends = _layout_of(keys), []
     for change in (step, -step):
         side = _with_changed_key(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)

@@ -117,7 +117,7 @@ class SkiFile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StationRow:
-    """A row of a ski's table in SI; its origin is the meaning of the column."""
+    """A row of a ski's table in SI; `origin` of a column: what replaces it if it is missing."""
 
     station: Annotated[
         float,

@@ -43,7 +43,7 @@ class FileValues:
     """The keys and values of one ski file.
 
     values: as parsed.
-    said: the same, checked, in SI.
+    said: the same values, checked, in SI.
     table: columns of its table by name; empty without one.
     """
 
@@ -53,7 +53,7 @@ class FileValues:
     table: dict[str, StationTable] = field(default_factory=dict)
 
     def beside(self, key: str) -> Path | None:
-        """Give the path of a file that the key names, counted from this file's folder."""
+        """Path of the file that the key names, relative to the ski file's folder; None if the key is missing."""
         name = getattr(self.said, key)
         return self.file.parent / name if name else None
 
@@ -82,7 +82,7 @@ class FileValues:
                 ).tag("contradiction", key=key, value=self.shown(key), other=other)
 
     def shown(self, key: str) -> str:
-        """The value of a key as the file has it."""
+        """Text of the key's value, as in the file."""
         return shown_value(self.values[key])
 
     def ski(self, *, like: Ski | None = None) -> Ski:

@@ -24,7 +24,7 @@ _OTHER_UNITS: Final = {
 
 
 def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
-    """Give a value of a file, in the file's unit; its place is the quantity's name."""
+    """The value of a key, in the file's unit, if it is in the quantity's range; otherwise ParameterError."""
     try:
         return quantity.in_range(value)
     except ParameterError as error:

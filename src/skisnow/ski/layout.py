@@ -249,7 +249,7 @@ class BaseShape:
 
 @functools.lru_cache(maxsize=32)
 def _height(base: BaseShape, station: bytes, layout: Layout) -> FloatArray:
-    """Height of a base at stations: a design changes other tables and keeps this one."""
+    """Height (m) of a base at stations, 0 at the boot; cached, because a design often keeps the base."""
     heights = base._height_over_contact_points(np.append(np.frombuffer(station), 0.0), layout)
     return heights[:-1] - heights[-1]
 

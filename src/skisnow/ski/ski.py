@@ -268,7 +268,7 @@ class Ski(Shown):
 
 @contextmanager
 def _named_errors(ski: Ski) -> Iterator[None]:
-    """Errors that arise inside are of this ski."""
+    """Context that adds the name of the ski to each ParameterError raised inside."""
     try:
         yield
     except ParameterError as error:

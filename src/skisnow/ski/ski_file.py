@@ -212,13 +212,13 @@ def _is_rigid(ski: Ski) -> bool:
 
 
 def _plain(value: float) -> float:
-    """The number without the last digits, which the change of unit made up, and none that is not a quantity."""
+    """The number with 15 digits, without the rounding of a change of unit; 0 if it is too small for a quantity."""
     return 0.0 if abs(value) < SMALLEST else float(f"{value:.15g}")
 
 
 @dataclass(slots=True)
 class Sources:
-    """Skis and snows by the words that name them, each read once.
+    """Cache of skis and snows by the words that name them; each file is read once.
 
     folder: where relative paths start; None: the current folder.
     """
@@ -242,15 +242,15 @@ class Sources:
         return self._snows[named]
 
     def take_snow(self, snow: SnowProperties, *, results: str, site: str | None) -> None:
-        """Use an existing snow instead of that of the words `results` and `site`, whose file is then not read."""
+        """Use an existing snow for the words `results` and `site`, instead of reading the results file."""
         self._snows[None, results, site] = snow
 
     def take_ski(self, word: str, keys: Mapping[str, Any]) -> None:
-        """Take the ski of these keys for that of a word, whose file is then not read."""
+        """Use the ski of these keys for a word, instead of reading the file that the word names."""
         self._skis[word] = with_range_warnings(lambda: ski_of_keys(keys))
 
     def path(self, word: str) -> Path:
-        """The place of a file."""
+        """Path of a file that a word names, relative to `folder`."""
         return (self.folder or Path()) / word
 
     def ski_file(self, word: str) -> Path | None:

@@ -165,7 +165,7 @@ class StationTable:
 
 @functools.lru_cache(maxsize=32)
 def _tabulated(rows: bytes, values: bytes, station: bytes) -> FloatArray:
-    """Values of a table at stations: a design changes one table and keeps the others."""
+    """Values of a table at stations (m); cached, because a design often changes only one table."""
     x, y = np.frombuffer(rows)[::-1], np.frombuffer(values)[::-1]
     return _cubic(x, y, _slopes(x, y), np.frombuffer(station))
 
@@ -184,7 +184,7 @@ def _cubic(x: FloatArray, y: FloatArray, slope: FloatArray, station: FloatArray)
 
 @functools.lru_cache(maxsize=32)
 def _hermite(x: bytes, station: bytes) -> tuple[FloatArray, FloatArray]:
-    """Growth of the cubics at stations with the value at each point, and with its slope, each (points, stations)."""
+    """Weights of the value and of the slope at each point in the cubics at stations, each (points, stations)."""
     points, at = np.frombuffer(x), np.frombuffer(station)
     ones, zeros = np.eye(points.size), np.zeros((points.size, points.size))
     return _cubic(points, ones, zeros, at), _cubic(points, zeros, ones, at)
@@ -217,7 +217,7 @@ def _end_slopes(width: FloatArray, next_width: FloatArray, rise: FloatArray, nex
 
 
 def _slope_growths(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Growth of the slopes at points with each value (values, points); at a bend of a slope the mean of both sides."""
+    """Derivatives of the slopes by each value (values, points); their mean where left and right ones differ."""
     width, last = np.diff(x), len(x) - 1
     rise = np.diff(y) / width
     by_rise = np.zeros((len(x), last))
