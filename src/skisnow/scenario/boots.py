@@ -57,9 +57,9 @@ class Boots(Shown):
         "sledge": of the sledge, which the snow moves; "slope": of the slope, so that the boots follow the table
         and nothing else moves them.
     over
-        Argument of ``at``; "distance" needs the frame of the sledge.
+        Quantity of ``at``: "time" or "distance"; "distance" needs the frame of the sledge.
     source
-        Where they come from, in words.
+        Origin of the poses, in words.
 
     Raises
     ------
@@ -365,13 +365,14 @@ def _cell(path: Path, line: int, column: str, text: str) -> float:
 
 
 def _axes_of_table(table: Mapping[str, Any], missing: Mapping[str, float]) -> FloatArray:
+    """Axes (n, 2, 3, 3) from the columns of angles (°); `missing` has the angles of absent columns."""
     n = len(next(iter(table.values())))
     angles = [[table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES]
     return np.array([[axes_of(*(float(row[i]) for row in of_ski)) for of_ski in angles] for i in range(n)])
 
 
 def _boots_on_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float) -> tuple[FloatArray, FloatArray]:
-    """Places (n, 2, 3) (m) and axes (n, 2, 3, 3) of both boots on the sledge."""
+    """Places (n, 2, 3) (m) and axes (n, 2, 3, 3) of both boots in the sledge's frame, from a table's columns."""
     n = len(next(iter(table.values())))
     place = np.zeros((n, 2, 3))
     for ski, (side, sense) in enumerate(zip(SIDES, (1.0, -1.0), strict=True)):

@@ -242,6 +242,7 @@ def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
 
 
 def _contact_on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
+    """The contact with another snow, whose k_u/H_V and u_y replace its own if the snow has them; without a map."""
     new = published_snow(snow) if isinstance(snow, str) else snow
     if not isinstance(new, SnowProperties):
         raise ParameterError(

@@ -106,11 +106,11 @@ def _read_table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prior:
-    """A key of a scenario with a range of values, each as likely as any other of the same order of size.
+    """A log-uniform prior: a range of values of a scenario's key, evenly likely in the logarithm.
 
-    low, high: ends in the key's unit, 0 < low ≤ high; equal ones: it is known. The logarithm is even between them.
-    about: whether the ends are multiplied with the scenario's own value.
-    origin: where the range comes from.
+    low, high: ends in the key's unit, 0 < low ≤ high; equal ends: a known value.
+    about: True if the ends are factors of the scenario's own value.
+    origin: source of the range.
     """
 
     key: str
@@ -129,11 +129,11 @@ class Prior:
                 SCENARIO_KEYS[self.key].in_range(end)
 
     def ends(self, own: float) -> tuple[float, float]:
-        """Both ends for a scenario with this value."""
+        """Both ends of the range, in the key's unit, for a scenario whose own value is `own`."""
         return (self.low * own, self.high * own) if self.about else (self.low, self.high)
 
     def at(self, shares: FloatArray, own: float) -> FloatArray:
-        """Values at shares (n,) between 0 and 1, within the range of the key."""
+        """Values (n,) at shares (quantiles from 0 to 1) of the prior, clipped to the allowed range of the key."""
         low, high = self.ends(own)
         key = SCENARIO_KEYS[self.key]
         return np.clip(low * (self.high / self.low) ** shares, key.lowest, key.highest) if high > 0.0 else 0.0 * shares

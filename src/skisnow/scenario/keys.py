@@ -146,6 +146,7 @@ def short_name(key: str) -> str:
 
 
 def _spellings(key: str) -> tuple[str, str, str, str]:
+    """Spellings of a full key that users may write: with and without section, each with and without unit."""
     bare = key.partition(".")[2]
     return key, bare, without_unit(key), without_unit(bare)
 
@@ -200,6 +201,7 @@ def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
 
 
 def _key_of_run(word: str) -> str:
+    """Full name of the key in KEY or KEY@RUN, with its run."""
     own, at, run = word.partition("@")
     if at and not run.strip():
         raise ParameterError("behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}").tag(

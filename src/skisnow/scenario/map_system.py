@@ -76,7 +76,7 @@ def length_unit(name: str) -> float | None:
 
 
 def _factor(text: str) -> float:
-    """Length of a unit (m)."""
+    """Length (m) of a unit from the number in its description; ParameterError unless above 0."""
     try:
         value = float(text)
     except ValueError:
@@ -156,7 +156,7 @@ def raster_errors() -> tuple[type[Exception], ...]:
 
 
 def _scale(system: MapSystem, x: float, y: float) -> tuple[tuple[float, float], str] | None:
-    """Length on the map divided by length on the ground, along x and y, and the UTM zone.
+    """Scale of the map along x and y (length on the map over that on the ground), and the UTM zone there.
 
     None without rasterio, or if the system has no known place on the earth.
     """

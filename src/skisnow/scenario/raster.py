@@ -21,7 +21,7 @@ FINEST, COARSEST = 0.01, 1e5
 
 
 class Limits(NamedTuple):
-    """Smallest and largest allowed number, and a word on numbers outside."""
+    """Smallest and largest allowed number of a column, and a hint for numbers outside."""
 
     lowest: float
     highest: float
@@ -52,7 +52,7 @@ of the slope."""
 
 @dataclass(frozen=True, slots=True)
 class PlacedValues:
-    """Columns over evenly spaced places.
+    """Columns of values at evenly spaced places, as read from a grid file.
 
     x, y: places (m), (n,) and (m,), rising.
     columns: values (n, m) by the name of their column.
@@ -84,7 +84,7 @@ class Raster:
 
 
 def number_within(row: CsvRow, column: str) -> float:
-    """Number in a cell of a table."""
+    """Number in a cell of a table, checked against the limits of its column."""
     value = row.number(column)
     allowed = LIMITS[column]
     if not allowed.lowest <= value <= allowed.highest:
@@ -209,6 +209,7 @@ def _require_usable(raster: Raster, system: MapSystem) -> None:
 
 
 def _in_degrees(path: str | Path, unit: Message, longitude: float, latitude: float, size: float) -> Message:
+    """Message of the error about a grid in degrees, with a command that converts it to metres."""
     target = utm_zone(longitude, latitude) if abs(latitude) <= 90.0 else "EPSG:32632"
     return Message(
         "{path}: {unit} The grid is at x = {x:.6g}, y = {y:.6g}, its cells are {size:.3g} wide. Allowed: metres, with "

@@ -196,7 +196,7 @@ def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
 
 
 def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: float) -> float:
-    """The middle of the first cell."""
+    """Coordinate (x or y) of the middle of the lower left cell."""
     by_corner = header.get(f"{axis}llcorner", math.nan) + size / 2.0
     middle = header.get(f"{axis}llcenter", by_corner)
     if abs(by_corner - middle) > ROUNDED * size:
@@ -240,7 +240,7 @@ def _refuse_number(path: str | Path, count: int, counts: tuple[int, int]) -> NoR
 
 
 def _where(text: str, first: int, cell: int) -> str:
-    """Line and column of a value by its number (0 or more)."""
+    """Text "line …, column …" for the value with this index in the file, counted from 0."""
     for line, words in enumerate(map(str.split, text[first:].split("\n")), start=text.count("\n", 0, first) + 1):
         if cell < len(words):
             return f"line {line}, column {cell + 1}"
@@ -275,7 +275,7 @@ def read_grid_table(path: str | Path, columns: Sequence[str], *, action: Message
 def _even(
     path: str | Path, places: FloatArray, rows: Sequence[CsvRow], column: str
 ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-    """Even places and the number of each row's place among them."""
+    """Evenly spaced places (m) of a column, and for each row the index of its place; ParameterError if uneven."""
     different = np.unique(places)
     if len(different) < 2:
         raise ParameterError("{path}, column {column}: there is only {places}; a grid needs two or more").tag(

@@ -34,7 +34,7 @@ _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ScenarioFile(ShownFields):
-    """A scenario with the words that it was given in.
+    """A scenario together with the keys and values from which it was built.
 
     title: The built-in name, or the file's path.
     values: Every key of `SCENARIO_KEYS` with the value in force, in the unit that the key names; None if missing. H_V
@@ -179,7 +179,7 @@ def _build_or_explain(scenario_input: ScenarioInput, sources: Sources) -> tuple[
 
 
 def _values(scenario_input: ScenarioInput, resolution: Resolution, scenario: Scenario) -> dict[str, Any]:
-    """Every key with its value; a given value keeps its digits, which a conversion to SI and back could change."""
+    """Values of all keys; a value of the file keeps its digits, which a conversion to SI and back could change."""
     values = {name: list(value) if isinstance(value, tuple) else value for name, value in resolution.values.items()}
     if scenario_input.base is not None:
         return {**scenario_values(scenario), **values}

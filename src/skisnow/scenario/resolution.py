@@ -103,7 +103,7 @@ class ScenarioInput(ShownFields):
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """Values that a scenario is built from, after files, changes and snows have replaced each other.
+    """Values from which a scenario is built, after later layers have replaced earlier ones.
 
     values: by full name, in the units of the keys.
     files: paths of the files that the values name, by key.
@@ -234,7 +234,7 @@ def _quantities(
 
 
 def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
-    """The key that counts among those of one layer for one quantity."""
+    """Key whose value counts, if several keys of one layer give a quantity; ContradictionError if none has priority."""
     others = [name for name in names if name not in NAMED_SNOWS]
     beside_one_snow = len(names) == 2 and len(others) == 1  # two named snows contradict each other also below a map
     if len(names) == 1 or (beside_one_snow and others[0] in OVERRIDES_NAMED_SNOW.get(quantity, ())):

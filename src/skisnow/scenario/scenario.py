@@ -26,7 +26,7 @@ from .terrain import Slope, Terrain, extent_of
 
 
 def course_on_slope(course: Course, slope: Slope) -> Course:
-    """The course in the slope's x and y."""
+    """The course converted to the slope's x and y (m)."""
     return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
@@ -240,7 +240,7 @@ def _require_sound(scenario: Scenario) -> None:
 
 
 def _require_room(scenario: Scenario) -> None:
-    """Reject skis without room side by side, and an edge angle, friction or place with which no run begins."""
+    """Reject skis that overlap side by side, and an edge angle, friction or place with which no run can start."""
     sledge, ski, shear, start = scenario.sledge, scenario.ski, scenario.shear, scenario.start
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres

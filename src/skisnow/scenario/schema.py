@@ -11,6 +11,7 @@ from .keys import SCENARIO_KEYS, SECTIONS
 
 
 def _one_of(*names: str) -> list[Schema]:
+    """Schemas for "oneOf" or "anyOf": each requires one of the names."""
     return [{"required": [name]} for name in names]
 
 
