@@ -70,11 +70,11 @@ class Analysis(Shown):
     campaign
         The analysed campaign.
     geometry, seed, n_resamples
-        How: see `analyse`.
+        Options of the analysis, as in `analyse`.
     penetration, shear
         Results of each kind of experiment, in SI; None if the campaign has no such data.
     difference
-        Relative difference of two groups that ``n_needed`` of the comparisons is for.
+        Relative difference of two groups for which the comparisons state ``n_needed``.
     regressions, site_means, group_comparisons, comparisons
         Relations between the quantities, means of the sites, ratios of sites, tools, observers and days, published
         values next to the campaign's own.
@@ -83,11 +83,11 @@ class Analysis(Shown):
     observations
         The used experiments with the snow that they were made on.
     time
-        When it was made.
+        Time of the analysis.
     snow_micro_pen
         Evaluation of the SnowMicroPen recordings; None if the campaign has no such data.
     weather
-        At each experiment, from a station; None if the campaign has no such data.
+        Weather at each experiment, from a station; None if the campaign has no such data.
 
     See Also
     --------

@@ -74,7 +74,7 @@ class Freedom(NamedTuple):
 
 
 class FittedSeries(NamedTuple):
-    """ln H, exponent g and depth zero δ of each series, their covariance and its share from scatter; group spreads."""
+    """ln H, g, δ of each series, covariance and its part from scatter; misfit, degrees of freedom; group spreads."""
 
     of_series: tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
     misfit: FloatArray
@@ -84,7 +84,7 @@ class FittedSeries(NamedTuple):
 
 
 class _Line(NamedTuple):
-    """The model linearised: dê/dln V, residual and weight of each reading."""
+    """The model linearised at the present estimate: dê/dln V (m), residual (m) and weight of each reading."""
 
     slope: FloatArray
     residual: FloatArray
@@ -117,7 +117,7 @@ class _Posterior:
 
 
 class SeriesFit:
-    """The iteration, all series at once.
+    """Iterative fit of the campaign's model to all series at once.
 
     ``seen`` is the mask of the readings in contact, ``n_groups`` the number of groups; the rest as in `fit_campaign`.
     """

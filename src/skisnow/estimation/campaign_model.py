@@ -50,7 +50,7 @@ class Parts(NamedTuple):
         return Parts(*(part * factor for part in self))
 
     def of(self, chosen: BoolArray) -> Parts:
-        """The same for the chosen series only."""
+        """Variance and parts of the chosen series only."""
         return Parts(*(part[chosen] for part in self))
 
 
@@ -124,7 +124,7 @@ class CampaignModel(ShownFields):
         )
 
     def factor(self, parts: Parts, group: IntArray, *further: tuple[FloatArray, FloatArray]) -> FloatArray:
-        """Student's factor by Welch and Satterthwaite, with at least one degree of freedom.
+        """Half-width of the 95 % interval over the standard error: Student's t with at least one degree of freedom.
 
         ``further`` are parts of the variance with their own degrees of freedom. Variance without a part counts as
         known.

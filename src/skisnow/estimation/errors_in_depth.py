@@ -62,7 +62,7 @@ class FittedHardness(ShownFields):
     scatter: FloatArray
 
     def of(self, chosen: BoolArray) -> FittedHardness:
-        """The same for the chosen series only."""
+        """Readings and hardness of the chosen series only (mask over the m series)."""
         value = {symbol: H[chosen] for symbol, H in self.value.items()}
         return FittedHardness(self.readings.of(chosen), value, self.scatter[chosen])
 
@@ -147,7 +147,7 @@ _LARGEST_VARIANCE: Final = 0.2
 
 @dataclass(frozen=True, slots=True, repr=False)
 class VolumeFactor(ShownFields):
-    """The factor b of n series.
+    """Factor b of F = b H_V V, estimated from n series.
 
     n: number of series.
     raw, expected_raw: by least squares, and the value that these estimate if F = H_V V is true, with these errors and
@@ -164,7 +164,7 @@ class VolumeFactor(ShownFields):
 
 
 def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel) -> VolumeFactor:
-    """The factor b of the series that have a hardness (N/m³, of Eqn 1) and an estimate of the model."""
+    """Estimate b of F = b H_V V from the series with a hardness (N/m³, of Eqn 1) and an estimate of the model."""
     estimated = np.isfinite(hardness) & np.isfinite(model.log_hardness)
     if not estimated.any():
         return VolumeFactor(0, *[float("nan")] * 5)
@@ -189,6 +189,7 @@ def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel
 
 
 def _log_load_ratio(readings: Readings) -> FloatArray:
+    """Logarithm (n,) of the load of each reading over the largest load of its series."""
     log = np.log(readings.load)
     return log - log[readings.largest][readings.series]
 

@@ -158,7 +158,7 @@ def letters_of_groups(pairs: Sequence[GroupComparison], names: Sequence[str]) ->
 
 
 class _EffectsFit:
-    """Least squares of the effects, on the cells of group and site: each cell has one row of the design."""
+    """Least-squares fit of group effects (and site effects) to means of the cells of group and site."""
 
     def __init__(self, logs: FloatArray, error2: FloatArray, groups: list[str], sites: list[str] | None) -> None:
         self.names, self._group = index_names(groups)
@@ -187,7 +187,7 @@ class _EffectsFit:
         self._variance = self._scatter2[self._of_cell] + error2
 
     def _spread(self, squares: FloatArray, free: FloatArray, error2: FloatArray, n_groups: int) -> None:
-        """σ² of each group and its degrees of freedom, pooled unless the groups clearly scatter differently."""
+        """Set σ² of each group and its degrees of freedom; pooled unless the groups clearly differ in scatter."""
         degrees = max(round(float(free.sum()), 6), 0.0)
         self.degrees = degrees
         error_squares = float(free @ error2)

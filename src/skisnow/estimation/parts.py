@@ -97,7 +97,7 @@ class ShearAnalysis(Shown):
 
 
 def used_words(screened: Screened) -> str:
-    """Number of used experiments, in words."""
+    """Text such as "12 of 15 experiments used"."""
     return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"
 
 
@@ -152,7 +152,7 @@ def site_snow(
     site: str | None,
     unloading_ratio: float | None,
 ) -> SnowProperties:
-    """The means over the used experiments of a site, as `skisnow.read_snow` reads them from results.json."""
+    """Snow of a site (None: all) from the means over its used experiments, as in `skisnow.read_snow`."""
     pressed = sheared = np.zeros(0), np.zeros(0, dtype=object)
     if penetration is not None and campaign.penetration is not None:
         used = penetration.screened.used

@@ -100,6 +100,7 @@ def column_rows(columns: Columns) -> Rows:
 
 
 def _listed(values: Sequence[Any] | npt.NDArray[Any]) -> Sequence[Any]:
+    """List of the values; None for a number or interval that is not finite."""
     if not isinstance(values, np.ndarray):
         return values
     listed: list[Any] = values.tolist()
@@ -174,7 +175,7 @@ def campaign_model_results(model: CampaignModel, unloading: Unloading) -> Json:
 
 
 def whole_degrees(angle: FloatArray) -> list[float]:
-    """Degrees as a person wrote them: the last bits that the conversion to radians costs are taken off."""
+    """Angles in degrees, rounded to 11 decimals: without the rounding error of the conversion to radians."""
     degrees: list[float] = np.round(np.degrees(angle), 11).tolist()
     return degrees
 
@@ -211,7 +212,7 @@ def model_rows(table: ModelTable | None) -> list[Json]:
 
 
 def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
-    """A row in the units of the table: A in mm², V in mm³, H in N/mm, N/mm² or N/mm³."""
+    """JSON row of a fitted model: A in mm², V in mm³, H in N/mm, N/mm² or N/mm³."""
     si = DEFINITIONS[fit.model.hardness].si
     factor_a, factor_b = si * MM2, si * MM3
     factors = {"a0": factor_a, "a1": factor_a, "b0": factor_b, "b1": factor_b}

@@ -111,7 +111,7 @@ def _finite_mean(values: Sequence[float]) -> float:
 
 
 def _by_relations(density: float, resistance: float) -> Json:
-    """Hand hardness from the resistance where there is one, otherwise from the density; S_f by Eqn 14."""
+    """JSON values by published relations: hand hardness from resistance (Pa), else density (kg/m³), and S_f."""
     low, high = SNOW_DENSITY_RANGE
     stress = float(failure_shear_stress_from_density(density)) / N_PER_MM2 if low <= density <= high else nan
     source, index = hand_hardness.RESISTANCE_SOURCE, hand_hardness.index_from_resistance(resistance)

@@ -178,7 +178,7 @@ class _Branch(NamedTuple):
 
 
 def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[FloatArray, ...]:
-    """Rebound ratio s, its error, half of its 95 % interval, s of a gauge step, by series; r, its freedom by group."""
+    """Of each series s, its error, half 95 % interval, s of a gauge step; of each group r and degrees of freedom."""
     series, group = branch.series, model.group[chosen]
     law = _linearise_unloading(
         branch, np.minimum(model.offset[chosen], _LARGEST_SHARE * branch.penetration_depth[branch.largest]), model
@@ -256,7 +256,7 @@ def _centred(branch: Readings, values: FloatArray, weight: FloatArray) -> FloatA
 
 
 def _line(branch: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Slope of e = e_0 - s g by weighted least squares, Σ w (g - ḡ)² of each series, and the residuals."""
+    """Slope s (m,) of e = e_0 - s g by weighted least squares, Σ w (g - ḡ)² of each series, and the residuals."""
     dg, de = (_centred(branch, values, weight) for values in (g, branch.penetration_depth))
     spread = branch.sums(weight * dg**2)
     with np.errstate(invalid="ignore", divide="ignore"):
