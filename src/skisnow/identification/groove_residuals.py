@@ -140,6 +140,7 @@ class GrooveResiduals:
         return mean, float(np.sum(weight) ** -0.5)
 
     def _columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
+        """Measured values, standard deviations and mask of used ones for depth, width and turn radius."""
         grooves = self.measured
         return [
             (grooves.depth, grooves.depth_sd, np.isfinite(grooves.depth)),
@@ -158,6 +159,7 @@ class GrooveResiduals:
         return np.concatenate(parts)
 
     def _turn_radius(self, values: Values, groove: Groove) -> float:
+        """Turn radius (m): of the groove, or of a sliding edge from the side force that S_f allows."""
         if not self.slides:
             return groove.turn_radius
         of = {**self.scenario.values, **values}

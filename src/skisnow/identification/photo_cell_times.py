@@ -107,6 +107,7 @@ class PhotoCellTimes:
         return run.station[first:], run.time[first:], sd[first:]
 
     def _without_offset(self, late: FloatArray, sd: FloatArray) -> FloatArray:
+        """Time differences (s) less their weighted mean if the clock is free, otherwise unchanged."""
         if not self.clock_is_free:
             return late
         weight = sd**-2.0

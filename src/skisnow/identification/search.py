@@ -260,6 +260,7 @@ class Search:
         return float(np.sqrt(state.cost / max(len(state.residuals) - len(state.place), 1)))
 
     def _in_noise(self, state: SearchState, step: FloatArray) -> float:
+        """Change of the residuals by a step, in standard deviations of one residual."""
         assert state.jacobian is not None
         noise = self.noise(state)
         return float(np.linalg.norm(state.jacobian @ step)) / noise if noise > 0.0 else 0.0

@@ -101,7 +101,7 @@ class Uncertainty:
 
     @property
     def standard_errors(self) -> FloatArray:
-        """Standard errors (p,)."""
+        """Standard errors (p,), in the sizes of the parameters."""
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
 
