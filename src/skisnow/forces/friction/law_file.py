@@ -81,7 +81,7 @@ class FrictionFile:
             ).tag("out_of_order", places=places)
 
     def at(self, temperature: float | None, liquid_water: float = 0.0) -> WaterFilmFriction:
-        """Law on a snow; beyond the states that of the nearest one.
+        """Friction law on snow of this state, interpolated; beyond the states that of the nearest one.
 
         temperature: Temperature of the snow's surface (°C); None: not known, which only a law without temperature
             accepts.

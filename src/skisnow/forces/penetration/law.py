@@ -79,7 +79,7 @@ class PointLaw(CheckedParameters, abc.ABC):
         return ()
 
     def deepest_after(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """The deepest depth (m) of a place at ε_max that is brought to depth ε, both in m."""
+        """New maximum depth (m) of a place with maximum depth ε_max (m) after it is brought to depth ε (m)."""
         return np.maximum(np.maximum(np.asarray(depth, float), np.asarray(deepest, float)), 0.0)
 
     @abc.abstractmethod
@@ -107,9 +107,9 @@ class PointLaw(CheckedParameters, abc.ABC):
 
 
 class DeepeningPoint(PointLaw):
-    """Virgin loading by the depth, q(ε), and unloading by a multiple of its steepest growth so far.
+    """Base of laws with a pressure q(ε) on first loading and linear unloading; k_u: a multiple of the steepest q'.
 
-    A law gives ``unloading_ratio`` and `_loading`.
+    A subclass defines ``unloading_ratio`` (that multiple) and `_loading`.
     """
 
     __slots__ = ()
@@ -117,7 +117,7 @@ class DeepeningPoint(PointLaw):
 
     @abc.abstractmethod
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """q, the work ∫q and k_u at deepest depths."""
+        """Pressure q (N/m²), work ∫q dε (J/m²) and k_u (N/m³) at maximum depths (m)."""
 
     def _check_together(self) -> None:
         if not 1.0 <= self.unloading_ratio < np.inf:

@@ -70,7 +70,7 @@ class LayeredPoint(DeepeningPoint):
         return (self.layer_depth,)
 
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """q, the work ∫q and k_u at deepest depths."""
+        """Pressure q (N/m²), work ∫q dε (J/m²) and k_u (N/m³) at maximum depths (m)."""
         deepest = np.maximum(np.asarray(deepest, float), 0.0)
         top, hardness, growth = np.minimum(deepest, self.layer_depth), self.snow_hardness, self.hardness_growth
         below = deepest - top
@@ -136,7 +136,7 @@ class ProfilePoint(DeepeningPoint):
         return self.tops[1:]
 
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """q, the work ∫q and k_u at deepest depths."""
+        """Pressure q (N/m²), work ∫q dε (J/m²) and k_u (N/m³) at maximum depths (m)."""
         deepest = np.maximum(np.asarray(deepest, float), 0.0)
         tops, growth = np.array(self.tops), self.snow_hardness * np.array(self.shares)
         thick = np.diff(tops)

@@ -69,7 +69,7 @@ class ElasticPoint(PointLaw):
 
 
 class _Hypoplastic(PointLaw):
-    """Loading along a multiple of H_V, unloading and reloading along the steeper k_u."""
+    """Base of laws with loading along a multiple of H_V, unloading and reloading along the steeper k_u."""
 
     __slots__ = ()
     snow_hardness: float

@@ -55,6 +55,7 @@ class ShearLaw(CheckedParameters, abc.ABC):
         return np.stack([np.broadcast_to(self._stress(edge_depth, edge_angle), edge_depth.shape), thrust])
 
     def _checked_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        """F_t/(L e) (N/m²) after checks of angle and measured ranges; depths below 0 count as 0."""
         angle = edge_angles(edge_angle)
         depth, angle = np.broadcast_arrays(np.maximum(np.asarray(edge_depth, float), 0.0), angle)
         for measured, value in ((self.edge_depth_range, depth), (self.edge_angle_range, angle)):

@@ -205,5 +205,6 @@ def cutting_thrust(
 
 
 def _shear_plane(edge_angle: npt.ArrayLike, transverse_friction: float) -> FloatArray:
+    """Angle φ = (ϑ - β)/2 (rad) of the shear plane to the snow surface; NaN where it is not above 0."""
     plane = (np.asarray(edge_angle, float) - np.arctan(transverse_friction)) / 2.0
     return np.where(plane > 0, plane, np.nan)
