@@ -68,7 +68,7 @@ class Interval(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PathEstimate:
-    """Samples of the speed along a track.
+    """Random samples of the speed along a track that are consistent with its places.
 
     time: (n,) s, times of the nodes.
     step: (n - 1,) s, between nodes; 0 between parts of the track.
@@ -163,7 +163,7 @@ def _average_close_points(time: FloatArray, place: FloatArray) -> tuple[FloatArr
 
 
 def _excerpt(pieces: list[tuple[FloatArray, FloatArray]], scales: TimeScales) -> PathModel:
-    """The stretch of at most `EXCERPT` points with the longest path."""
+    """Model of the stretch with the longest path, of at most `EXCERPT` points."""
     best: tuple[float, FloatArray, FloatArray] | None = None
     for time, place in pieces:
         steps = np.hypot(*np.diff(place[:, :2], axis=0).T)
@@ -244,7 +244,7 @@ def _join(
     segment: IntArray,
     pieces: list[tuple[FloatArray, FloatSamples]],
 ) -> PathEstimate:
-    """The parts one after the other, with the straight lines over gaps between them."""
+    """Estimate of the whole track from its parts, with straight lines over the gaps between them."""
     nodes = np.concatenate([at for at, _ in pieces])
     step = np.diff(nodes)
     across = np.zeros(len(step))
@@ -329,7 +329,7 @@ def estimate_place_noise(track: Track, smoothed: SmoothedTrack) -> PlaceNoise | 
 
 
 def _squares(runs: list[FloatArray], order: int) -> FloatArray:
-    """Squared differences of both coordinates over the variance that white noise of 1 m gives each of them."""
+    """Squared differences of this order of both coordinates, divided by their variance for white noise of 1 m."""
     differences = [np.diff(run, order, axis=0) for run in runs if len(run) > order]
     return np.concatenate([np.zeros(0), *(np.sum(difference**2, axis=1) for difference in differences)]) / math.comb(
         2 * order, order

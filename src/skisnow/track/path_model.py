@@ -111,7 +111,7 @@ class _Residuals(NamedTuple):
 
 
 class Chain:
-    """A linear chain of states that a white noise drives, over steps of any length.
+    """Linear chain of states driven by white noise, as a prior, over steps of any length.
 
     dynamics: (k, k), of ẋ = dynamics x + (0, …, 0, 1) noise.
     density: Spectral density of the noise.

@@ -157,6 +157,7 @@ def _descent(
 
 
 def _zone_margin(drop: float) -> float:
+    """Height (m) of the zones at top and bottom of a descent with this drop (m)."""
     return max(1.0, _ZONE * drop)
 
 

@@ -49,7 +49,7 @@ class _Point:
 
 
 class _Reader:
-    """Handler of the elements from expat that collects the points."""
+    """Handler that collects the points of a GPX or TCX file from the events of the XML parser expat."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -97,6 +97,7 @@ class _Reader:
         self._path.pop()
 
     def entity(self, name: str, *_rest: object) -> None:
+        """Reject the file: it declares an entity, which could expand without limit."""
         self._refuse(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
 
     def _refuse(self, value: str, allowed: str) -> NoReturn:

@@ -49,7 +49,7 @@ _RECENT: Final = 5
 
 @dataclass(eq=False)
 class _Epoch:
-    """The sentences of one time of day."""
+    """Values of the NMEA sentences with the same time of day."""
 
     time: time
     row: int

@@ -298,9 +298,9 @@ def _is_geodetic(headings: Sequence[str], name: str, place: str) -> bool:
 
 
 def _columns(headings: Sequence[str], is_geodetic: bool, name: str, place: str) -> dict[str, _Column]:
-    """Columns by their names.
+    """Columns by their names, from the headings of the file.
 
-    A word of one letter and two words are synonyms only if no other heading has the meaning.
+    Vague synonyms (one letter, or two words) count only if no other heading has the same meaning.
 
     Raises FieldDataError: two headings have the same meaning, or the only one with a meaning has an unknown unit.
     """

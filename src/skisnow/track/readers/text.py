@@ -117,7 +117,7 @@ def spread_times(time: FloatArray, place: FloatArray) -> tuple[FloatArray, BoolA
 
 
 def _advance(place: FloatArray, begins: BoolArray) -> float:
-    """Length of the path within stamps relative to its expected share; infinite if nothing moves."""
+    """Length of the path within stamps relative to its expected share; 0 if nothing moves."""
     steps = np.hypot(*np.diff(place, axis=0).T)
     finite = np.isfinite(steps)
     whole = float(np.sum(steps[finite]))
