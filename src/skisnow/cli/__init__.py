@@ -17,7 +17,7 @@ LONGEST_MESSAGE: Final = 8_000
 
 
 def build_parser() -> argparse.ArgumentParser:
-    """Put the commands together; nothing heavy is imported before a command runs."""
+    """Parser of the command line with all commands; heavy modules are imported only when a command runs."""
     from importlib.metadata import version
 
     from . import (
@@ -55,10 +55,10 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command.
+    """Run one command; `arguments` default to those of the process.
 
-    Returns 0 when it did its work, 1 where the data or the machine refused, 2 for wrong words, 70 after an error that
-    was not foreseen.
+    Returns the exit status: 0 after success, 1 after an error in data or files, 70 after an unforeseen error. Wrong
+    words on the command line exit with 2.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # JSON is UTF-8 whatever the terminal's code page
@@ -106,12 +106,12 @@ def _print_error(error: SkisnowError | MemoryError) -> None:
 
 
 def _short(message: str) -> str:
-    """The message, shortened to the width of a screen."""
+    """A message of an error, shortened to `LONGEST_MESSAGE` characters."""
     return message if len(message) <= LONGEST_MESSAGE else f"{message[:LONGEST_MESSAGE]} …"
 
 
 def _stdout_lost() -> int:
-    """Replace standard output if it cannot be written, so that Python prints no second error at its end."""
+    """Replace standard output if it cannot be written, so that Python prints no second error; returns exit status 1."""
     try:
         sys.stdout.flush()
     except OSError:

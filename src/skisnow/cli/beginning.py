@@ -167,7 +167,7 @@ def run_ski(options: argparse.Namespace) -> int:
 
 
 def _pairs(option: str, texts: list[str]) -> dict[str, str]:
-    """Pairs of heading and statement from an option."""
+    """Column names or units by heading, from the texts HEADING=NAME of a repeatable option."""
     for text in texts:
         if "=" not in text:
             raise ParameterError("{option} {text}: an equals sign is missing. Write HEADING=NAME.").tag(

@@ -27,7 +27,7 @@ def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 
 def check(options: argparse.Namespace) -> int:
-    """Print the problems; 1 if any is an error."""
+    """Print the problems of a campaign; returns exit status 1 if one of them is an error."""
     problems, notes = _find_problems(options.campaign)
     errors, warnings, flags = (_count_of_severity(problems, severity) for severity in ("error", "warning", "flag"))
     if options.json:
@@ -47,6 +47,7 @@ def check(options: argparse.Namespace) -> int:
 
 
 def _find_problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
+    """Problems of a campaign with its quality flags, and notes of the analysis; only problems if it has errors."""
     from .._support.errors import FieldDataError
     from ..campaign import Problem, read_campaign
     from ..estimation import campaign_notes, quality_flags
@@ -95,7 +96,7 @@ def add_analyse(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 
 def analyse(options: argparse.Namespace) -> int:
-    """Analyse, write the results, print the summary."""
+    """Analyse a campaign, write its results to a folder, and print a summary."""
     from .. import estimation
     from .._support.environment import paused_collector
     from ..campaign import read_campaign
@@ -169,7 +170,7 @@ def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def import_file(options: argparse.Namespace) -> int:
-    """Import the file or undo an import, and print what was written."""
+    """Import a file as a campaign, or undo an import, and print the written or removed files."""
     from ..campaign.importing.answers import save_template
     from ..campaign.importing.folder import undo_import, write_import
     from ..campaign.reading.campaign_file import CAMPAIGN_FILE
@@ -204,7 +205,7 @@ def _read_answers(options: argparse.Namespace) -> Answers:
 
 
 def _ask_questions(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:
-    """Proposal after questions on the terminal."""
+    """Proposal of an import; with `asks` True its open questions are asked on the terminal first."""
     from ..campaign.importing.proposal import propose
 
     data = options.file.read_bytes()
@@ -227,7 +228,7 @@ def _ask_in_terminal(question: Question) -> str:
 
 
 def preview_lines(proposal: Proposal) -> list[str]:
-    """First rows of each table as they are stored, and H_V of one series."""
+    """Lines for the terminal with the first rows of each table as they are stored, and H_V of one series."""
     lines = []
     for table in proposal.tables:
         columns = [choice.column for choice in table.columns if choice.column]

@@ -93,7 +93,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 
 def carve_ski(options: argparse.Namespace) -> int:
-    """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
+    """Solve the carved turn of each ski, print and draw it; returns exit status 1 if an equilibrium was not found."""
     from ..carving.answer import answers_dict, sensitivities_dict
 
     prepare_figure(options.figure)
@@ -125,7 +125,7 @@ def carve_ski(options: argparse.Namespace) -> int:
 
 
 def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
-    """Derivatives of each output in its units per unit, and in % per %."""
+    """Table for the terminal of the derivatives of each output by each parameter, per unit and in % per %."""
     lines = [f"Derivatives, {ski}:", f"  {'output':26} {'parameter':26} {'per unit':>12} {'% per %':>9}"]
     for row in derivatives:
         relative = "" if row["percent_per_percent"] is None else f"{row['percent_per_percent']:9.4f}"
@@ -178,7 +178,7 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def design_ski(options: argparse.Namespace) -> int:
-    """Search, write, print; 1 where a goal is not reached."""
+    """Search a ski design, write and print it; returns exit status 1 if one of its goals is not reached."""
     prepare_figure(options.figure)
     with announced("loading"):
         from ..design import design_ski, read_design
@@ -215,7 +215,7 @@ def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) 
 
 
 def _front(options: argparse.Namespace, task: DesignTask) -> int:
-    """Write the Pareto front of two targets."""
+    """Search the Pareto front of two targets, write it, and print the paths or the points; returns exit status 0."""
     from ..design.search import design_front, write_front
 
     with announced("searching"):

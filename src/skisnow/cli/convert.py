@@ -45,7 +45,7 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 
 def convert_file(options: argparse.Namespace) -> int:
-    """Convert, and print the files that were written."""
+    """Convert a file into another format, and print the paths of the written files."""
     from .._support.units import CM, MM
 
     with announced(f"reading {options.source}"):

@@ -83,7 +83,10 @@ def _add_methods(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Identify, print, write; 0 with an answer, 1 with too few points or without convergence, 130 when interrupted."""
+    """Identify parameters, print and write them.
+
+    Returns exit status 0, 1 with too few points or without convergence, 130 or 143 after an interrupt.
+    """
     if options.resume and options.out is None:
         options.parser.error("--resume continues the results in --out DIR; name it")
     scenario_input = _prepare(options)
@@ -97,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _prepare(options: argparse.Namespace) -> ScenarioFile:
-    """Check the options and load the scenario before the work."""
+    """Check the options and the output folder before the search; returns the scenario."""
     with announced("loading"):
         from ..identification.intervals import require_bootstrap, require_emcee
 
@@ -137,7 +140,7 @@ def _identify(options: argparse.Namespace) -> Identification:
 
 
 def _with_fall_line(options: argparse.Namespace) -> ScenarioInput:
-    """The scenario, with the direction of the fall line that the option states."""
+    """Input of the scenario, with the compass direction of the fall line from the option if it is stated."""
     from ..scenario.reading import load_input
 
     scenario_input = load_input(options.scenario)

@@ -22,10 +22,10 @@ _BEGINS_AS_NUMBER: Final = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that names the option which a misspelt one is most like, before it misses that one."""
+    """Argument parser that reports a misspelt option first, with the most similar known one."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Look at the options, which belong to the last of several commands, then parse as usual."""
+        """Reject unknown options of the last of nested commands, then parse as usual."""
         words = [] if args is None or self._subparsers is not None else list(args)
         options = set(re.findall(r"--[\w-]+", self.format_help())) if words else set()
         for word in words[: words.index("--")] if "--" in words else words:
@@ -36,7 +36,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
-    """Add the option for the compass direction of x of a slope's axes; `why`: purpose."""
+    """Add the option for the compass direction in which the slope falls; `why`: its purpose, for the help."""
     parser.add_argument(
         "--fall-line-azimuth-deg",
         type=number("degrees", lowest=-360, highest=360),
@@ -90,10 +90,10 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
 def number(
     unit: str, *, lowest: float = -math.inf, highest: float = math.inf, above: bool = False
 ) -> Callable[[str], float]:
-    """Converter of numbers for an option; its error states the allowed form.
+    """Function that converts the text of an option to a number; its error states the allowed form.
 
     unit: unit of the number; empty without one.
-    lowest, highest: allowed range; None if a table of keys declares it, which is checked before the work begins.
+    lowest, highest: allowed range; it is only checked if `highest` is finite.
     above: True if the lowest value itself is excluded.
     """
     ranged = highest < math.inf
@@ -122,7 +122,7 @@ def number(
 def whole_number(
     lowest: float = -math.inf, highest: float = math.inf, *, or_zero: bool = False
 ) -> Callable[[str], int]:
-    """A reader of whole numbers within a range, see `number`; ``or_zero``: 0 is allowed, too."""
+    """Function that converts the text of an option to a whole number in a range; ``or_zero``: 0 is allowed, too."""
 
     def read(word: str) -> int:
         try:
@@ -139,7 +139,7 @@ def whole_number(
 
 
 def _shown(word: str, limit: int = 80) -> str:
-    """A word within a message."""
+    """A word in quotes for a message, cut after `limit` characters."""
     return repr(word if len(word) <= limit else f"{word[:limit]}…")
 
 
@@ -155,9 +155,9 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 
 def scheduler_of(options: argparse.Namespace) -> str | None:
-    """Executor of the options; an error if it cannot work, and a warning that the network must be trusted.
+    """Scheduler of the options, checked as by `checked_scheduler`; None without one.
 
-    Raises ParameterError: it is not a scheduler, or Dask is not installed.
+    Raises ParameterError: it is not a scheduler, Dask is not installed, or a number of workers is also stated.
     """
     scheduler: str | None = options.scheduler
     if scheduler is not None and scheduler not in LOCAL and options.workers is not None:
@@ -168,9 +168,9 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
 
 
 def checked_scheduler(scheduler: str | None) -> str | None:
-    """The scheduler of the option if it can be used; warns of a connection that is not encrypted.
+    """The same scheduler, word or address, after a check; prints a warning if its connection is not encrypted.
 
-    Raises ParameterError: as of `scheduler_of`.
+    Raises ParameterError: it is not a scheduler, or Dask is not installed.
     """
     if scheduler is None or scheduler in LOCAL:
         return scheduler

@@ -35,7 +35,7 @@ def print_warnings(warnings: Iterable[object]) -> None:
 
 
 def prepare_output(folder: Path | None) -> None:
-    """Require a writable folder, and clean up after killed processes with a message; nothing without a folder.
+    """Create a writable folder, and print notes on the removal of remains of killed processes; nothing if it is None.
 
     Raises OutputError: the folder cannot be made or written.
     """
@@ -46,7 +46,7 @@ def prepare_output(folder: Path | None) -> None:
 
 
 def prepare_figure(place: Path | None) -> None:
-    """Require that a figure can be written at its place; nothing without a place.
+    """Check before long work that a figure can be written to a path; nothing if it is None.
 
     Raises ParameterError, OutputError: as `require_drawable`.
     """
@@ -64,14 +64,14 @@ LINES_AT_ONCE: Final = "SKISNOW_PROGRESS_LINES"
 
 
 class MovingLine:
-    """One line of stderr that each text overwrites; elsewhere than on a terminal each text is a line."""
+    """Line of a terminal on standard error that each text overwrites; without a terminal each text is a new line."""
 
     def __init__(self) -> None:
         self.moves = sys.stderr.isatty()
         self._width = 0
 
     def show(self, text: str) -> None:
-        """Overwrite the previous text; longer texts are cut, because a second line would remain."""
+        """Overwrite the previous text; a text is cut at the width of the terminal."""
         if self.moves:
             room = max(shutil.get_terminal_size().columns - 1, 10)
             shown = text if len(text) <= room else f"{text[: room - 1]}…"
@@ -82,7 +82,7 @@ class MovingLine:
         sys.stderr.flush()
 
     def wipe(self) -> None:
-        """Leave an empty line, with the next text at its beginning."""
+        """Erase the text, so that the next output begins in the same line."""
         if self._width:
             sys.stderr.write("\r" + " " * self._width + "\r")
             sys.stderr.flush()
@@ -90,7 +90,7 @@ class MovingLine:
 
 
 class Progress:
-    """Callable that prints the current step, first after one second and then from time to time.
+    """Callable that prints the current step of long work, first after one second and then from time to time.
 
     On a terminal one line is rewritten at most twice a second; elsewhere a line is written at most every ten seconds.
     """
@@ -111,7 +111,7 @@ class Progress:
         self._line.show(text + self._time_left(text, time_s))
 
     def _time_left(self, text: str, time_s: float) -> str:
-        """The time left of work that is counted, "3 of 15", from the second text of its kind on."""
+        """Text with the remaining time of work that is counted as in "3 of 15"; "" for the first text of its kind."""
         counted = _COUNTED.search(text)
         if counted is None or "left" in text:
             return ""
@@ -129,13 +129,13 @@ class Progress:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Take the line away."""
+        """Erase the line."""
         self._line.wipe()
 
 
 @contextmanager
 def announced(doing: str, *, patience_s: float = 2.0) -> Iterator[None]:
-    """Print the current step if it takes longer than this; on a terminal also the elapsed time."""
+    """Print `doing` if the block takes longer than `patience_s` seconds; on a terminal also the elapsed time."""
     line, done, begun = MovingLine(), threading.Event(), time.monotonic()
 
     def tell() -> None:
@@ -163,14 +163,14 @@ LATER: Final = "writing the computed results first; a second request stops at on
 
 
 class Ended(KeyboardInterrupt):
-    """Interrupt by the system, which asked this process to end (SIGTERM)."""
+    """Raised when the system asks this process to end (SIGTERM)."""
 
 
 @dataclass(slots=True)
 class Ending:
-    """State of requests to end this process; a caught interrupt stays recorded.
+    """Record of requests to end this process, also after their exception was caught.
 
-    requested: True after a request of the system.
+    requested: True after a request of the system (SIGTERM).
     pressed: True after Ctrl-C during `finishing`.
     """
 
@@ -183,7 +183,7 @@ class Ending:
 
     @contextmanager
     def finishing(self) -> Iterator[None]:
-        """Finish a block that takes seconds, such as the writing of a run; a second request interrupts it."""
+        """Run a block, such as the writing of a run, to its end despite one interrupt; a second one stops it."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return
@@ -214,7 +214,7 @@ class Ending:
 
 @contextmanager
 def ending_is_an_interrupt() -> Iterator[Ending]:
-    """Raise `Ended` at SIGTERM; only the main thread can, in another one nothing changes."""
+    """Raise `Ended` in the block at SIGTERM; yields the record of requests. Only the main thread can do this."""
     ending = Ending()
     if threading.current_thread() is not threading.main_thread():
         yield ending
@@ -227,7 +227,7 @@ def ending_is_an_interrupt() -> Iterator[Ending]:
 
 
 def report_interrupt(stopped: KeyboardInterrupt, place: Path) -> int:
-    """Print where the finished part of the work is kept; returns the exit status."""
+    """Print the place where the finished part of interrupted work is kept; returns the exit status."""
     ended = isinstance(stopped, Ended)
     print(f"\nskisnow: {'ended' if ended else 'interrupted'}; what is finished is kept in {place}.\n"
           "The same command goes on with it.", file=sys.stderr)  # fmt: skip
@@ -238,7 +238,7 @@ STATUS: Final = 70  # exit status after an unforeseen error; ``EX_SOFTWARE`` of 
 
 
 def report_failure(error: Exception) -> int:
-    """Write the traceback to a file and print its path; returns the exit status."""
+    """Write the traceback of an unforeseen error to a file and print its path; returns the exit status."""
     reference = secrets.token_hex(4)
     place = _write_log(f"error-{reference}.txt", _error_report(error, reference))
     where = f"The trace is in {place}; please send it with what you did." if place else "The trace:"
@@ -261,7 +261,7 @@ def _error_report(error: Exception, reference: str) -> str:
 
 
 def _write_log(name: str, text: str) -> Path | None:
-    """Path of the written file, in the user's log folder or the temporary folder; None if neither can be written."""
+    """Write a file to the user's log folder or the temporary folder; returns its path, None if both fail."""
     from platformdirs import user_log_path
 
     for folder in (user_log_path("skisnow"), Path(tempfile.gettempdir())):

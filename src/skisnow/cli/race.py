@@ -113,7 +113,7 @@ def _add_comparison_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Search, simulate the result by the scenario's method, compare, print, write; 1 if no line passes all gates."""
+    """Search the quickest line, print and write it; returns exit status 1 if no line passes all gates."""
     try:
         with ending_is_an_interrupt():
             fastest, checked, simulated, worth = _run_race(options)
@@ -137,7 +137,7 @@ def run(options: argparse.Namespace) -> int:
 def _run_race(
     options: argparse.Namespace,
 ) -> tuple[QuickestLine, list[tuple[str, Score]], Run | None, tuple[Worth, ...]]:
-    """The quickest line, its checked scores with the run by the scenario's method, and the worth of the variants."""
+    """Result of the search, scores and run by the scenario's method as in `_scores_by_method`, and variants' times."""
     with announced("loading"):
         from ..racing import compare_variants, drawn_for_race, quickest_line
         from ..racing.search import require_cmaes
@@ -170,7 +170,7 @@ def _run_race(
 
 
 def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
-    """The scenario, and its variants by name."""
+    """Scenario of the command, and the variants to compare by name: other skis, and the usual changes."""
     from ..racing import worth_changes
 
     scenario_input = scenario_of(options)
@@ -193,7 +193,7 @@ def _read_start_line(options: argparse.Namespace, scenario: Scenario) -> RacingL
 def _scores_by_method(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
-    """Scores of both lines by the scenario's method, if the search used another, and the run on the quickest line."""
+    """Scores of the quickest and the start line by the scenario's method, [] if that is "fast"; run on the quickest."""
     from ..racing.point import run_score, ski_line
 
     if fastest.model == "point":

@@ -62,7 +62,7 @@ def add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def write_pages(options: argparse.Namespace) -> int:
-    """Read the run and write the replay."""
+    """Read a run and write its replay; print the paths of the files."""
     if options.track is None and (options.fall_line_azimuth_deg is not None or options.starts_at_s):
         options.parser.error("--fall-line-azimuth-deg and --starts-at-s place a track: name it with --track")
     if options.other is not None and options.ghost is not None:
@@ -83,7 +83,7 @@ def write_pages(options: argparse.Namespace) -> int:
 
 
 def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
-    """The measured track in the axes of the run."""
+    """Read the measured track of an option in the axes of the run."""
     from .._support.units import DEGREE
     from ..replay import measured_track
     from ..track.read import read_track
@@ -154,7 +154,7 @@ def add_serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 
 def serve_lab(options: argparse.Namespace) -> int:
-    """Serve until interrupted; 1 where the web lab is not installed."""
+    """Serve the web lab until it is interrupted; returns exit status 1 if it is not installed."""
     try:
         from ..web.server import Certificate, require_allowed, serve
     except ModuleNotFoundError as missing:

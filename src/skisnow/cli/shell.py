@@ -72,7 +72,11 @@ def print_completion(options: argparse.Namespace) -> int:
 
 
 def candidates(parser: argparse.ArgumentParser, words: Sequence[str], begun: str) -> list[str]:
-    """Words that may stand after others, whatever is begun beyond a leading -; none for a file or a number."""
+    """Words for the completion of a command line; [] if a file or a number comes next.
+
+    words: complete words before the cursor.
+    begun: word at the cursor; one that begins with - is an option.
+    """
     waiting: argparse.Action | None = None
     places = _positionals(parser)
     for word in words:
@@ -98,7 +102,7 @@ def _positionals(parser: argparse.ArgumentParser) -> list[argparse.Action]:
 
 
 def _options(parser: argparse.ArgumentParser, words: Iterable[str]) -> list[str]:
-    """Long names of options that are not there yet, or may be there several times."""
+    """Long names of a parser's options that are not among the words, or can be repeated."""
     there = set(words)
     several = argparse._AppendAction
     actions = [
@@ -108,14 +112,14 @@ def _options(parser: argparse.ArgumentParser, words: Iterable[str]) -> list[str]
 
 
 def _values(action: argparse.Action) -> list[str]:
-    """Choices of an option or an argument, where it can be named."""
+    """Possible values of an option or an argument; [] if they cannot be listed."""
     if action.choices is not None:
         return list(map(str, action.choices))
     return _known_names(action.dest)
 
 
 def _known_names(stored_as: str) -> list[str]:
-    """Names of skisnow for an option or argument by the name that it is stored as."""
+    """Built-in skis, scenarios, snows or scenario keys for an argument stored under this name; [] for others."""
     if stored_as == "ski":
         from ..ski import ski_names as names
     elif stored_as == "scenario":
@@ -147,7 +151,7 @@ def print_manual(options: argparse.Namespace) -> int:
 
 
 def manual_page(parser: argparse.ArgumentParser, version: str) -> str:
-    """The page in roff, section 1: the help of each command as it is printed."""
+    """Manual page in roff (section 1) with the help of each command."""
     lines = [
         f'.TH SKISNOW 1 "" "skisnow {_text(version)}" "User commands"',
         ".SH NAME",
@@ -164,7 +168,7 @@ def manual_page(parser: argparse.ArgumentParser, version: str) -> str:
 
 
 def _help_lines(parser: argparse.ArgumentParser) -> Iterator[str]:
-    """Help of a command and of its commands, each below its name, in lines that fit a terminal."""
+    """Lines in roff with the help of a command, then of its subcommands, each below its name."""
     parser.formatter_class = partial(argparse.HelpFormatter, width=78)
     yield from (f".SS {_text(parser.prog)}", ".nf", *map(_text, parser.format_help().splitlines()), ".fi")
     for action in parser._actions:
@@ -174,7 +178,7 @@ def _help_lines(parser: argparse.ArgumentParser) -> Iterator[str]:
 
 
 def _text(text: str) -> str:
-    """Text that roff takes as it is: a line that begins with a point or an apostrophe would be a request."""
+    """Text with characters escaped that are commands in roff."""
     escaped = text.replace("\\", "\\e").replace("-", "\\-")
     return re.sub(r"^(?=[.'])", r"\\&", escaped)
 
@@ -207,7 +211,7 @@ def add_schema(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def print_schema(options: argparse.Namespace) -> int:
-    """Print the schema with this name."""
+    """Print the JSON Schema whose name the command states."""
     from ..parameters.json_schema import schema_text
 
     print(schema_text(json_schema(options.name)), end="")
@@ -215,7 +219,7 @@ def print_schema(options: argparse.Namespace) -> int:
 
 
 def json_schema(name: str) -> Schema:
-    """The schema with one of `NAMES`."""
+    """JSON Schema of an input or output of skisnow by its name, one of `NAMES`."""
     from .._support.user_files import read_json
     from ..campaign.reading.campaign_file import campaign_schema
     from ..carving.question import CARVE_KEYS

@@ -50,7 +50,7 @@ def add_simulate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def simulate_scenario(options: argparse.Namespace) -> int:
-    """Simulate, print, write; 0 with every outcome but an interrupted one, which is kept all the same."""
+    """Simulate a scenario, print and write the run; returns exit status 0 with every outcome but an interrupted one."""
     if options.list:
         from ..scenario import scenario_names, scenario_text
 
@@ -71,7 +71,7 @@ def simulate_scenario(options: argparse.Namespace) -> int:
 
 
 def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
-    """Reject wrong options before the work."""
+    """Reject wrong options, prepare the output folder and print warnings before the simulation."""
     if options.boots_out is not None:
         from .._support.staging import require_ending
         from ..simulation.run_tables import ENDINGS
@@ -173,7 +173,7 @@ def _write_run(options: argparse.Namespace, result: Run, summary: dict[str, Any]
 
 
 class _Pace:
-    """Simulated time, share, and how that compares with real time, from the first call on."""
+    """Progress callback of a simulation that prints simulated time, share, and the speed relative to real time."""
 
     def __init__(self, progress: Progress, prefix: str = "", *, begun: Callable[[], object] = lambda: None) -> None:
         self._progress = progress
@@ -248,7 +248,7 @@ def _add_ensemble(parser: argparse.ArgumentParser) -> None:
 
 
 def simulate_turn(options: argparse.Namespace) -> int:
-    """Compute from campaign to turn, print the differences between the contacts or the JSON, write the report."""
+    """Analyse a campaign and simulate a turn on its snow; print sentences or JSON, and write the report."""
     with announced("loading"):
         from ..pipeline import turn
         from ..scenario.identify_section import prior_of

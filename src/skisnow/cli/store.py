@@ -79,7 +79,7 @@ def _add_sync(add_parser: Callable[..., argparse.ArgumentParser], every: argpars
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the subcommand; returns 1 if verify found damage, else 0."""
+    """Run an action on the store and print its result; returns 1 after damage, or open conflicts of sync, else 0."""
     from ..campaign.store import Store
 
     act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify, "sync": _sync}
@@ -179,7 +179,7 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _group_place(word: str) -> StorePlace:
-    """Place of the group's store; a missing file is created only in an existing folder, such as a plugged-in stick."""
+    """Place of the group's store from an option; an error for a file in a folder that does not exist."""
     from ..campaign.store import store_place
 
     place = store_place(word)
@@ -226,6 +226,6 @@ def _size_text(n_files: int, n_bytes: int) -> str:
 
 @contextmanager
 def _percent_printed(doing: str) -> Iterator[Callable[[int, int], None]]:
-    """Callback of processed and total bytes that prints the percentage."""
+    """Yield a callback with processed and total bytes that prints the percentage of the work `doing`."""
     with Progress() as progress:
         yield lambda done_bytes, total_bytes: progress(f"{doing}: {100 * done_bytes // max(total_bytes, 1)} %")

@@ -65,7 +65,7 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
     _print_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            table = run_study(study, workers=options.workers, executor=executor, progress=_count(progress))
+            table = run_study(study, workers=options.workers, executor=executor, progress=_print_points(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, study.partial)
     _print_outcomes(study.out, table)
@@ -85,14 +85,16 @@ def _run_part(options: argparse.Namespace, study: Study) -> int:
     executor = scheduler_of(options)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            place = run_shard(study, shard, workers=options.workers, executor=executor, progress=_count(progress))
+            place = run_shard(
+                study, shard, workers=options.workers, executor=executor, progress=_print_points(progress)
+            )
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, shard.place(study))
     print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
     return 0
 
 
-def _count(progress: Progress) -> Callable[[int, int], None]:
+def _print_points(progress: Progress) -> Callable[[int, int], None]:
     return lambda done, total: progress(f"{done} of {total} points")
 
 
