@@ -19,7 +19,7 @@ BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 
 def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
-    """An array of finite numbers as compiled code takes it; it checks no shape itself."""
+    """Array of an argument `name` for compiled code; a ParameterError unless it has the shape and finite numbers."""
     array = np.asarray(given, float, order="C")
     if array.shape != shape:
         raise ParameterError("{name} has shape {shape}; it must be {needed}").tag(
@@ -31,7 +31,7 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
 
 
 def content_bytes(thing: object) -> Iterator[bytes]:
-    """Bytes of the contents of an object, down to numbers and texts; equal objects give equal bytes.
+    """Yield the bytes of all numbers and texts in an object, also in nested dataclasses, lists and arrays.
 
     >>> b" ".join(content_bytes((1, "a")))
     b"1 'a'"
@@ -58,9 +58,9 @@ def content_hash(begin: str, *things: object) -> str:
 
 
 def index_names(names: Sequence[str]) -> tuple[list[str], npt.NDArray[np.int64]]:
-    """The distinct names in alphabetical order, and the number of each given name among them.
+    """Distinct names in alphabetical order, and for each given name its index among them.
 
-    An array of texts would be as wide as the longest of them for every entry.
+    An array of texts instead would need the width of the longest text for every entry.
 
     >>> index_names(["b", "a", "b"])
     (['a', 'b'], array([1, 0, 1]))

@@ -40,7 +40,7 @@ _HEAD: Final = 1 << 16
 
 
 class UnreadableTextError(Exception):
-    """A file is not valid text. ``row`` is the line of the file, or None if unknown."""
+    """A file is not valid text. ``row`` is the line of the problem, or None if unknown."""
 
     def __init__(self, *, value: str | None, allowed: str, action: str, row: int | None = None) -> None:
         super().__init__(allowed)

@@ -15,10 +15,10 @@ from .messages import Message, joined
 
 
 def import_extra(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
-    """Import a module of a package that an extra of skisnow installs.
+    """Import a module of an optional package; a ParameterError that names skisnow's extra to install if it is missing.
 
-    what: work that is impossible without it, a noun phrase.
-    instead: another way, a whole sentence.
+    what: work that needs the package, a noun phrase for the message.
+    instead: sentence with another way, appended to the message.
     """
     try:
         return import_module(module)
@@ -35,7 +35,7 @@ def import_extra(module: str, *, extra: str, what: Message, instead: Message | N
 
 @contextmanager
 def paused_collector() -> Iterator[None]:
-    """Pause Python's cyclic garbage collector: it searches the millions of cells of a large campaign repeatedly."""
+    """Pause Python's cyclic garbage collector in the block: it is slow with millions of cells of a large campaign."""
     running = gc.isenabled()
     gc.disable()
     try:
@@ -46,7 +46,7 @@ def paused_collector() -> Iterator[None]:
 
 
 def load_certificate(context: ssl.SSLContext, file: str | Path, key: str | Path | None = None) -> None:
-    """Load a certificate and its private key, which may be in the same file.
+    """Load a certificate and its private key, which may be in the same file, into the context of a connection.
 
     Raises OSError, ssl.SSLError or ValueError: the files cannot be read, or the key has a password: OpenSSL would ask
         for it on the terminal.

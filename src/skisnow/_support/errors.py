@@ -15,7 +15,7 @@ from .messages import ENGLISH, Message, count_message, joined, languages, templa
 
 
 def as_template(message: str, fields: Mapping[str, Any]) -> str:
-    """A `Message` from a template and its fields; a `Message`, or a text with braces but no fields, is unchanged."""
+    """`Message` of a text with fields; a `Message`, or a text with braces but without fields, is returned unchanged."""
     is_template = not isinstance(message, Message) and (fields or not {*"{}"} & {*message})
     return Message(message, **fields) if is_template else message
 
@@ -32,7 +32,7 @@ class _Coded(Exception):  # noqa: N818 -- of errors and warnings
         self.code = code
 
     def tag(self, code: str, /, **fields: Any) -> Self:
-        """The same error with its code, and with fields in its template."""
+        """Set the code of the error and the fields of its template; returns the same error."""
         self.args = (as_template(self.message, fields),)
         self.code = code
         return self
@@ -52,7 +52,7 @@ class _Coded(Exception):  # noqa: N818 -- of errors and warnings
         return translated(self.message, language)
 
     def at(self, place: object) -> Self:
-        """The same error with its file, key or other place before the message."""
+        """New error with a place, such as a file or key, before the message of this one."""
         fields = {name: value for name, value in self.fields.items() if name not in ("place", "problem")}
         return type(self)(Message("{place}: {problem}", place=place, problem=self.message, **fields)).tag(self.code)
 
@@ -89,7 +89,7 @@ class FieldDataError(SkisnowError):
 
     @property
     def sentences(self) -> list[Any]:
-        """The first problems without their codes, for a page."""
+        """Sentences of the first problems without their codes, and the number of others."""
         return self._shown_problems([getattr(problem, "sentence", problem) for problem in self.problems])
 
     def _shown_problems(self, problems: Sequence[object]) -> list[object]:

@@ -36,7 +36,7 @@ _languages_of_pages: list[Callable[[], str]] = []
 
 @contextmanager
 def in_language(language: str) -> Iterator[None]:
-    """Write a document in a language inside the block: `str(message)`, and numbers of `report.formatting`."""
+    """Set the current language in the block, which `str(message)` and the numbers of `report.formatting` use."""
     before = _LANGUAGE.set(language)
     try:
         yield
@@ -45,7 +45,7 @@ def in_language(language: str) -> Iterator[None]:
 
 
 def current_language() -> str:
-    """Language of the document that is being written, otherwise of the page of the lab, otherwise English."""
+    """Code of the language set by `in_language`, otherwise that of the current page of the lab, otherwise "en"."""
     language = _LANGUAGE.get(None)
     if language is not None:
         return language
@@ -53,7 +53,7 @@ def current_language() -> str:
 
 
 def use_language_of_pages(language: Callable[[], str]) -> None:
-    """Use the result of a function as current language where no document sets one."""
+    """Register the function that returns the language of the current page, used when `in_language` sets none."""
     _languages_of_pages[:] = [language]
 
 
@@ -87,7 +87,7 @@ class Message(str):
 
 
 def count_message(singular: str, plural: str, /, *, count: int, **fields: Any) -> Message:
-    """A message whose template depends on the field ``count``.
+    """Message with the template for one or for several, by the field ``count``.
 
     >>> print(count_message("{count} test of {name}", "{count} tests of {name}", count=2, name="Ann"))
     2 tests of Ann
@@ -96,12 +96,12 @@ def count_message(singular: str, plural: str, /, *, count: int, **fields: Any) -
 
 
 def template(text: str) -> str:
-    """The same text, marked for translation: for templates in tables, whose fields are filled later."""
+    """Mark a text for extraction by the translation tools, such as a template in a table; returns it unchanged."""
     return text
 
 
 def joined(messages: Sequence[object], between: str = " ") -> Message:
-    """Whole messages one after the other, such as sentences of a paragraph."""
+    """One message of several whole ones, such as sentences of a paragraph, with a text between them."""
     names = [f"part_{number}" for number in range(len(messages))]
     return Message(between.join(f"{{{name}}}" for name in names), **dict(zip(names, messages, strict=True)))
 
@@ -113,7 +113,7 @@ def languages() -> dict[str, str]:
 
 
 def translated(value: object, language: str) -> str:
-    """Text of a value as it is inserted into a message of a language."""
+    """Text of a value, such as a message, number, date or list, in a language."""
     return _formatter(language).format_field(value, "")
 
 
@@ -166,7 +166,7 @@ def _make_printed(text: str, printed: str) -> _Printed:
 
 
 def _plain(value: Any) -> Any:
-    """The value, or its text if it cannot be pickled for every process."""
+    """Field of a message that can be pickled: the value itself, or its text for an object of another class."""
     if isinstance(value, BaseException):
         return getattr(value, "message", None) or _Printed(value)
     if isinstance(value, list | tuple | set | frozenset):
@@ -194,7 +194,7 @@ def _formatter(language: str) -> LocalFormatter:
 
 
 class LocalFormatter(Formatter):
-    """`str.format` with numbers, dates and messages of a language."""
+    """Formatter like `str.format` that writes numbers, dates and messages in a language."""
 
     def __init__(self, language: str) -> None:
         self._language = language
@@ -244,6 +244,6 @@ _OUTCOMES: Final = (
 
 
 def outcome_words(outcome: str) -> str:
-    """Words of the outcome of a run, a gate, a carve or an identification, or of the side of a gate."""
+    """Words that can be translated for an outcome such as "missed_gate", or for the side of a gate."""
     words = outcome.replace("_", " ")
     return Message(words) if words in _OUTCOMES else words

@@ -33,7 +33,7 @@ MOST_COLUMNS: Final = 1_000
 
 
 class NoTextError(ValueError):
-    """Bytes are not text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` the tried one."""
+    """Bytes are not text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` the one that was tried."""
 
     def __init__(self, place: str, encoding: str) -> None:
         super().__init__(f"{place} is no {encoding} text")
@@ -42,7 +42,7 @@ class NoTextError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class DecodedText:
-    """Text and how it was encoded: the codec's name, and a name for people where it is not UTF-8."""
+    """Decoded text with Python's name of its codec, and a readable name of the encoding, None for UTF-8."""
 
     text: str
     codec: str
@@ -50,7 +50,7 @@ class DecodedText:
 
 
 def encoding_of(data: bytes) -> tuple[str, str | None]:
-    """The codec of a text file, and a name for people where it is not UTF-8.
+    """Python's codec of a text file, and a readable name of the encoding, None for UTF-8.
 
     >>> encoding_of("Höhe".encode()), encoding_of("Höhe".encode("cp1252"))
     (('utf-8', None), ('cp1252', 'Windows-1252'))
@@ -79,7 +79,7 @@ def decoded(data: bytes) -> DecodedText:
 
 
 def named_separator(head: str) -> str | None:
-    r"""The separator that a first line like ``sep=;`` names, whatever character it is.
+    r"""Separator (any character) that a first line such as ``sep=;`` names; None without such a line.
 
     >>> named_separator('"sep=;"\na;b'), named_separator("a;b")
     (';', None)
@@ -90,7 +90,7 @@ def named_separator(head: str) -> str | None:
 
 
 def most_frequent_separator(head: str) -> str:
-    r"""The separator found most often, outside quotes, in the first line that has any; the comma where none is.
+    r"""Most frequent separator (comma, semicolon, tab) outside quotes in the first line with one; else the comma.
 
     >>> most_frequent_separator('"a,b,c";d\n1;2'), most_frequent_separator("Title\na;b\n1,5;2")
     (';', ';')
@@ -146,7 +146,7 @@ def _count_numbers_with(cells: Iterable[str], mark: str) -> int:
 
 
 def with_decimal_point(cell: str) -> str:
-    """The number with a point for its decimal comma; a cell with a point is made invalid, because 1.500 may be 1500.
+    """Cell with a decimal point instead of a comma; one with a point becomes invalid, because 1.500 may be 1500.
 
     >>> with_decimal_point("1,5"), with_decimal_point("1.500,5")
     ('1.5', '1·500.5')
@@ -155,7 +155,7 @@ def with_decimal_point(cell: str) -> str:
 
 
 def column_names(cells: Iterable[str], columns: Iterable[str]) -> list[str]:
-    """Names of a header, the known ones as they are written; the case of letters does not matter.
+    """Names of a header without outer blanks; one that equals a known column but for case gets the column's spelling.
 
     >>> column_names([" X_M", "Gate", "Colour"], ["gate", "x_m"])
     ['x_m', 'gate', 'Colour']
@@ -180,10 +180,10 @@ def csv_text(rows: Iterable[Iterable[object]]) -> str:
 
 
 def protect_from_formulas(text: str) -> str:
-    """Cell for a text in a table that people open: spreadsheet programs do not read it as a formula.
+    """Text of a cell with an apostrophe in front if a spreadsheet program could read it as a formula.
 
     A text that begins with = + - @, a tab or a carriage return, and is not a number, gets an apostrophe in front.
-    So does one that begins so behind apostrophes, so that `remove_protection` gives every text back.
+    So does one that begins so after apostrophes, so that `remove_protection` restores every text.
 
     >>> [protect_from_formulas(text) for text in ("=1+1", "-1.5", "'=a", "it's", "-")]
     ["'=1+1", '-1.5', "''=a", "it's", "'-"]
@@ -194,7 +194,7 @@ def protect_from_formulas(text: str) -> str:
 
 
 def remove_protection(cell: str) -> str:
-    """Text of a cell that `protect_from_formulas` wrote.
+    """Original text of a cell that `protect_from_formulas` wrote: without the added apostrophe.
 
     >>> [remove_protection(cell) for cell in ("'=1+1", "-1.5", "''=a", "'tis")]
     ['=1+1', '-1.5', "'=a", "'tis"]
@@ -208,12 +208,12 @@ _HEAD: Final = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class CsvRow:
-    """One row of a table.
+    """One row of a CSV table.
 
-    path, row: file and row, the header being row 1.
-    cells: by column, without blanks around them.
-    action: action that the error of a cell recommends.
-    mark: the decimal mark of the file's numbers.
+    path, row: file, and number of the row; the header is row 1.
+    cells: texts by column, without blanks around them.
+    action: sentence with the fix that errors of this row recommend.
+    mark: decimal mark of the file's numbers.
     """
 
     path: Path
@@ -223,14 +223,14 @@ class CsvRow:
     mark: str = "."
 
     def number(self, column: str) -> float:
-        """The finite number in a column; an error names the cell of any other text."""
+        """Number in a column; a ParameterError that names the cell unless it is a finite number."""
         value = number(self.cells[column], self.mark)
         if not math.isfinite(value):
             raise self.refused(column, Message("A finite number is needed."), code="not_a_number")
         return value
 
     def refused(self, column: str, problem: Message, *, code: str, action: Message | None = None) -> ParameterError:
-        """Error of a cell, with one sentence for the problem and one for the fix."""
+        """Error for a cell of this row, to be raised by the caller: sentences with the problem and the fix."""
         return ParameterError("{path}, row {row}, column {column}: {value!r}: {problem} {action}").tag(
             code,
             path=self.path,
@@ -245,12 +245,12 @@ class CsvRow:
 def csv_rows(
     path: str | Path, columns: Sequence[str], *, further: Sequence[str] = (), action: Message
 ) -> Iterator[CsvRow]:
-    """The rows of a table that are not blank, one after the other: a wrong row is rejected before the next is read.
+    """Read the rows of a CSV table that are not blank, one after the other; a wrong row raises a ParameterError.
 
-    path: UTF-8, UTF-16 or Windows-1252 with a first line of the names of the columns, below ``sep=;`` if there is one;
+    path: text in UTF-8, UTF-16 or Windows-1252 with the names of the columns first, below ``sep=;`` if there is one;
         comma, semicolon or tab, and with the last two a decimal point or comma.
-    columns, further: columns that must be there, and those that may be, in any case of letters; others are not read.
-    action: action that errors recommend.
+    columns, further: required and optional columns, in any case of letters; others are not read.
+    action: sentence with the fix that errors recommend.
     """
     path = Path(path)
     try:

@@ -31,7 +31,7 @@ _PLACE_REASONS: Final = {
 
 
 def connect(place: Path | None, *, mode: Mode = "rwc", timeout_s: float = 0.0) -> sqlite3.Connection:
-    """Open a database without a transaction of the driver's own; None: in memory. Threads may share it.
+    """Open an SQLite file, None: a database in memory. No transaction begins automatically; threads may share it.
 
     Raises sqlite3.Error: the file cannot be opened; much damage shows only when it is read.
     """
@@ -50,7 +50,7 @@ def _sqlite_uri(place: Path, mode: Mode) -> str:
 
 
 def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
-    """Check that tables are there, as tables and with all of their columns."""
+    """Raise a `sqlite3.DatabaseError` if one of the tables or of their columns is missing."""
     for table, columns in tables.items():
         query = "select count(*) from sqlite_master where type = 'table' and name = ?"
         if database.execute(query, (table,)).fetchone() != (1,):
@@ -62,7 +62,7 @@ def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
 
 
 def require_sound_pages(database: sqlite3.Connection) -> None:
-    """Check the file's pages by SQLite's quick check, which reads all of them once."""
+    """Raise a `sqlite3.DatabaseError` if SQLite's quick check, which reads all pages once, finds damage."""
     (message,) = database.execute("pragma quick_check(1)").fetchone()
     if message != "ok":
         raise sqlite3.DatabaseError(str(message))
@@ -75,7 +75,7 @@ def primary_code(error: BaseException) -> int:
 
 
 def place_reason(error: BaseException) -> str | None:
-    """Reason why the place cannot be used, and the fix; None if the content of the file caused the error."""
+    """Reason in words why a file's place cannot be used, with the fix; None if the error is in the file's content."""
     return _PLACE_REASONS.get(primary_code(error))
 
 

@@ -35,9 +35,8 @@ _MOST_STALE: Final = 10_000
 class Stage:
     """Hidden folder whose files replace those of the target folder when all are written.
 
-    path: the folder to fill.
-    stale: paths in the target of files that only an earlier run can have left; they are removed if there are no new
-        ones.
+    path: hidden folder to fill.
+    stale: relative paths of files that an earlier run may have left in the target; they are removed from it.
     """
 
     path: Path
@@ -46,10 +45,10 @@ class Stage:
 
 @contextmanager
 def staged(folder: Path, *, last: str) -> Iterator[Stage]:
-    """Stage whose files are moved into a folder at the end of the block; an error before changes nothing.
+    """Yield a stage whose files are moved into a folder at the end of the block; an error before changes nothing.
 
     Files of an earlier run are replaced, others are not.
-    last: file whose presence shows that all others are complete: removed first, moved last.
+    last: name of the file whose presence shows that all others are complete: removed first, moved last.
     """
     try:
         hidden, lock = _new_hidden(folder)
@@ -75,9 +74,9 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
 
 
 def prepare_folder(folder: Path) -> list[str]:
-    """Create a folder if needed, check that it can be written, and complete or remove what killed processes left.
+    """Create a folder if needed, check that it can be written, and complete or remove stages of killed processes.
 
-    Returns: sentences about the actions.
+    Returns: a sentence about each of these stages.
     """
     require_writable(folder)
     try:
@@ -89,7 +88,7 @@ def prepare_folder(folder: Path) -> list[str]:
 
 
 def _finish_or_remove(hidden: Path) -> str | None:
-    """Complete or remove the stage of a killed process; returns a note, None while its process still runs."""
+    """Complete or remove the stage of a killed process; returns a sentence about it, None if its process still runs."""
     lock = _locked(hidden)
     if lock is None and not _is_old(hidden):
         return None
@@ -137,7 +136,7 @@ def _list_files(stage: Path) -> list[Path]:
 
 
 def _require_own(folder: Path, last: str, names: Iterable[str | Path]) -> None:
-    """Reject a folder with files of these names but without the file that an earlier run wrote last."""
+    """Raise an OutputError if a folder has files of these names, but not the `last` file of an earlier run."""
     others = [folder / name for name in names if (folder / name).exists()]
     if others and not (folder / last).exists():
         raise OutputError("{path} is not from an earlier run and is kept. Choose another folder or move the file.").tag(
@@ -146,7 +145,7 @@ def _require_own(folder: Path, last: str, names: Iterable[str | Path]) -> None:
 
 
 def _require_inside(names: Sequence[str]) -> None:
-    """ValueError for a path that leads out of the folder or that no file can have, and for very many."""
+    """Raise a ValueError for a relative path that leads out of the folder or is invalid, and for too many paths."""
     if len(names) > _MOST_STALE:
         raise ValueError(len(names))
     for name in names:
@@ -156,7 +155,7 @@ def _require_inside(names: Sequence[str]) -> None:
 
 
 def _is_old(hidden: Path) -> bool:
-    """Without locks in the system, a folder without writes for a day counts as abandoned."""
+    """True on Windows, where locks are not used, for a stage without writes for a day; it counts as abandoned."""
     return sys.platform == "win32" and time.time() - hidden.stat().st_mtime > _A_DAY_S
 
 
@@ -178,7 +177,7 @@ def _lock_folder(folder: Path) -> Iterator[None]:
 
 
 def _locked(hidden: Path) -> int | None:
-    """Lock that ends with this process; None if another process holds it, or the system has no locks."""
+    """File descriptor that locks a stage until it is closed; None if another process has the lock, or without locks."""
     if sys.platform == "win32":
         return None
     import fcntl
@@ -193,7 +192,7 @@ def _locked(hidden: Path) -> int | None:
 
 
 def require_ending(path: str | Path, *endings: str) -> None:
-    """Reject a file name that ends otherwise, whatever the case of its letters."""
+    """Raise a ParameterError unless a file name has one of these endings; the case of letters does not matter."""
     if Path(path).suffix.lower() not in endings:
         raise ParameterError("{path} does not end in {ending}. Rename it.").tag(
             "wrong_ending", path=path, ending=endings[0] if len(endings) == 1 else list(endings)
@@ -209,7 +208,7 @@ def write_file(path: str | Path, content: str | bytes | Iterable[bytes]) -> None
 
 @contextmanager
 def place_to_write(path: str | Path) -> Iterator[Path]:
-    """Empty temporary file, which is renamed to the path if the block succeeds and removed otherwise."""
+    """Yield the path of an empty temporary file, which is renamed to `path` if the block succeeds, else deleted."""
     path = Path(path)
     temporary: Path | None = None
     try:
@@ -241,7 +240,7 @@ def require_writable(folder: str | Path) -> None:
 
 
 def cannot_write(path: str | Path, error: OSError) -> OutputError:
-    """The sentence for a place that cannot be written."""
+    """Error for a place that cannot be written, with the system's reason."""
     reason = error.strerror or error
     return OutputError("{path} cannot be written: {reason}. Choose another place or free some space.").tag(
         "cannot_write", path=path, reason=reason

@@ -45,7 +45,7 @@ _LIKE_RADIANS_DEG: Final = 1.6
 
 
 class Unit(NamedTuple):
-    """A unit as people write it, and its size in SI."""
+    """A unit: its symbol in texts, and the factor from it to SI."""
 
     symbol: str
     size: float
@@ -84,7 +84,7 @@ _BY_ENDING: Final = {
 
 
 def unit_of_name(name: str) -> Unit:
-    """The unit that a name of a key or column ends with; none: a number without unit, of size 1.
+    """Unit at the end of the name of a key or column; without one, the unit with the symbol "" and the size 1.
 
     >>> unit_of_name("snow.H_V_N_per_mm3"), unit_of_name("friction.mu_0").symbol
     (Unit(symbol='N/mm³', size=1000000000.0), '')
@@ -109,7 +109,7 @@ def _unit_ending(name: str) -> str:
 
 
 def in_degrees_if_radians(angle_deg: float) -> float | None:
-    """Degrees for a number that looks like radians, else None.
+    """Angle in degrees if a number stated as degrees looks like radians (above 0, below 1.6), otherwise None.
 
     >>> round(in_degrees_if_radians(0.785), 1), in_degrees_if_radians(45.0), in_degrees_if_radians(0.0)
     (45.0, None, None)
@@ -138,7 +138,7 @@ _ROUNDING: Final = 1e-12
 
 
 class Facts(NamedTuple):
-    """Text of an object's repr: a title, and rows of a name and a text; with one row or none all is on one line."""
+    """Content of an object's repr: title, and rows of name and text; with at most one row all is on one line."""
 
     title: str
     rows: tuple[tuple[str, str], ...] = ()
@@ -172,7 +172,7 @@ class Shown:
         return "\n".join([_clip(head), *(_clip(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
 
     def _repr_html_(self) -> str:
-        """The same as a table, which a notebook shows."""
+        """Table of the title and rows in HTML, which a notebook displays."""
         title, rows = self._notebook_facts()
         caption = escape(f"{type(self).__name__} {title}".strip())
         cells = "".join(
@@ -184,7 +184,7 @@ class Shown:
 
 
 class ShownFields(Shown):
-    """A dataclass displayed with one row for each field, without units, which its docstring states."""
+    """Base of dataclasses whose repr has one row for each field, without units, which the docstring states."""
 
     __slots__ = ()
 
@@ -230,14 +230,17 @@ def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
 
 
 def field_facts(thing: Any, units: dict[str, str], *, title: str = "") -> Facts:
-    """One row for each field of a dataclass: an array by its size and ends, in the unit given, all else in short."""
+    """Title and rows of a dataclass's repr: for each field its short value, for an array its shape and range.
+
+    units: unit by the name of the field, appended to its numbers.
+    """
     shown = [field.name for field in fields(thing) if field.repr]
     rows = [(name, _short_text(getattr(thing, name), units.get(name, ""))) for name in shown]
     return Facts(title, tuple(rows))
 
 
 def name_with_values(thing: object) -> str:
-    """A dataclass by its name and values, all else by its name alone: no address in memory, the same each time.
+    """Reproducible text of an object: a dataclass by its name and values, any other object by its name alone.
 
     >>> from skisnow.forces.friction import ConstantFriction
     >>> name_with_values(ConstantFriction(0.04)), name_with_values(math.sqrt)

@@ -38,7 +38,7 @@ def run_batch(
     executor: ExecutorLike | None = None,
     progress: Progress | None = None,
 ) -> list[Row]:
-    """Rows of all points, in their order.
+    """Call a function for many points, in this or several processes; returns the rows of all points in their order.
 
     Parameters
     ----------
@@ -98,9 +98,9 @@ def compute_missing(
     executor: ExecutorLike | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Compute the rows of points that are not kept yet, and keep them; memory does not grow with their number.
+    """Compute the missing rows of points and add them to `kept`; memory does not grow with their number.
 
-    numbers: requested points; None: all.
+    numbers: numbers of the requested points; None: all.
     """
     wanted = worker_count(workers)
     numbers = range(len(points)) if numbers is None else numbers
@@ -126,7 +126,7 @@ LOOKED_AFTER_S: Final = 2.0
 class Pool:
     """Workers that compute rows of points; to be used in a ``with`` statement, which ends them.
 
-    function: from a point to a row of JSON values. With several workers it is pickled once for each of them.
+    function: function from a point to a row of JSON values; with several workers it is pickled once for each of them.
     workers: number of processes or threads, as `worker_count` gives it; 1 with no executor: this process itself.
     advice: text for the error of a process that ends unexpectedly: which rows are kept, and what to do.
     """
@@ -139,9 +139,9 @@ class Pool:
         self._running: set[Future[Done]] = set()
 
     def rows(self, points: Iterable[Numbered], count: int | None = None) -> Iterator[list[NumberedText]]:
-        """Rows as they come, in any order.
+        """Yield lists of finished rows with their numbers, in the order in which they are finished.
 
-        points: they may be made as they are needed.
+        points: pairs of number and point; an iterator is only advanced as needed.
         count: number of points; may be omitted for a list.
         """
         if self._executor is None and self._workers == 1:
@@ -168,7 +168,7 @@ class Pool:
         self._crew = None
 
     def _compute_chunks(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
-        """Rows of each finished chunk. Each worker has two chunks; their size follows from the time per point."""
+        """Yield the rows of each finished chunk of the `left` points; the size of chunks follows the time per point."""
         if self._crew is None:
             executor = "processes" if self._executor is None else self._executor
             self._crew = crew_of(executor, self._function, self._workers)
@@ -196,7 +196,7 @@ class Pool:
 
 
 def worker_count(workers: int | None) -> int:
-    """The given number of workers; None: the number of cores available to this process."""
+    """The same number of workers, at least 1; for None the number of cores available to this process."""
     if workers is None:
         return available_cores()
     if workers < 1:
@@ -205,7 +205,7 @@ def worker_count(workers: int | None) -> int:
 
 
 def available_cores() -> int:
-    """Cores that this process may use."""
+    """Number of processor cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -242,13 +242,13 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
 
 
 def require_executor(executor: ExecutorLike | None) -> None:
-    """Reject an unusable executor before the work begins."""
+    """Raise an error before the work if the executor is a text but no valid word or address of a scheduler."""
     if isinstance(executor, str) and executor not in LOCAL:
         require_scheduler(executor)
 
 
 def _workers_of(executor: Executor) -> int | None:
-    """Number of workers of an executor of the standard library or mpi4py; 0 if it does not report one."""
+    """Number of workers of an executor of the standard library or mpi4py; None if it does not report one."""
     names = ("_max_workers", "num_workers")
     workers = next((getattr(executor, name) for name in names if hasattr(executor, name)), None)
     return workers if isinstance(workers, int) and workers > 0 else None

@@ -39,7 +39,7 @@ LOST_WORKERS: Final = Message("The scheduler was lost, or gave the work up.")
 
 
 class Crew:
-    """Workers of an executor that compute chunks of points; each chunk gives a future with its rows.
+    """Workers of an executor that compute chunks of points; a submitted chunk returns a future with its rows.
 
     executor: it is not shut down here.
     compute: function from the points of a chunk to its rows; see `on_workers`.
@@ -68,12 +68,12 @@ class Crew:
         return max(1, self._size())
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
-        """Hand out a chunk; a process that starts with it ignores Ctrl-C, which only the parent handles."""
+        """Submit a chunk to the workers; a process that starts with it ignores Ctrl-C, which the parent handles."""
         with interrupts_ignored():
             return self._executor.submit(self._compute, points)
 
     def explain(self, error: Exception) -> Message | None:
-        """Explanation of an error that the function did not raise; None: it is passed on."""
+        """Message that explains a failure of the workers; None for an error that the computed function raised."""
         if isinstance(error, BrokenExecutor):
             return Message("A worker process ended unexpectedly, perhaps for lack of memory.")
         is_lost = isinstance(error, CancelledError) or (isinstance(error, SkisnowError) and error.code == LOST)
@@ -89,10 +89,10 @@ class Crew:
 
 
 def process_crew(function: PointFunction, workers: int) -> Crew:
-    """Processes of this computer.
+    """Crew of new processes on this computer.
 
-    They are started afresh ("spawn"), on every system alike, with the first chunk, and stay: loading the libraries
-    takes long. They end with their parent, however that ends: when the connection to them is closed.
+    They start with the first chunk ("spawn", on every system) and stay, because loading the libraries takes long. They
+    end when the connection to their parent closes, however the parent ends.
     """
     context = multiprocessing.get_context("spawn")
     alive, leash = context.Pipe(duplex=False)
@@ -108,12 +108,12 @@ def process_crew(function: PointFunction, workers: int) -> Crew:
 
 
 def on_workers(function: PointFunction) -> Callable[[list[Numbered]], Done]:
-    """Computation of a chunk that carries the function, pickled once, to workers on this computer or others."""
+    """Function that computes a chunk on a worker of any computer; it contains `function` in pickled form."""
     return partial(compute_on_worker, pickle.dumps(function), own_identity(), str(Path.cwd()))
 
 
 class _Worker:
-    """State of a worker process; in every other process it stays empty."""
+    """Function of this worker process, set by `_prepare_worker`; None in every other process."""
 
     function: PointFunction | None = None
 
@@ -144,7 +144,7 @@ def interrupts_ignored() -> Iterator[None]:
 
 
 def begin_worker(alive: Connection) -> None:
-    """Begin a worker process; it ends when the parent's end of `alive` is closed."""
+    """Set up a worker process: it ignores Ctrl-C and ends when the parent's end of `alive` is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_exit_when_parent_ends, args=(alive,), daemon=True).start()
 
@@ -163,10 +163,7 @@ Numbered: TypeAlias = tuple[int, Any]
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """Rows of a chunk.
-
-    seconds_per_point: wall time (s).
-    """
+    """Result of a chunk: its rows with their numbers, and the mean wall time of a point (s)."""
 
     rows: list[NumberedText]
     seconds_per_point: float
@@ -185,12 +182,12 @@ class Identity(NamedTuple):
 
 @lru_cache(maxsize=1)
 def own_identity() -> Identity:
-    """Identity of this process, cached: reading the version takes milliseconds, too long for each chunk."""
+    """Version and core of this process's skisnow, cached because reading the version takes milliseconds."""
     return Identity(version("skisnow"), core.SOURCE_HASH)
 
 
 def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
-    """Rows of some points, and the mean time of a point (s)."""
+    """Call a function for numbered points; returns their rows and the mean time of a point (s)."""
     start = time.perf_counter()
     rows = [(number, json_text(function(point))) for number, point in points]
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
@@ -211,7 +208,7 @@ def compute_on_worker(packed: bytes, identity: Identity, folder: str, points: Se
 
 @lru_cache(maxsize=4)
 def _unpacked(packed: bytes, folder: str) -> Any:
-    """Function from its pickled bytes, after a change to its folder and a check of its files."""
+    """Unpickle a function after a change to the sender's folder, and check that its input files are the same here."""
     if Path(folder).is_dir() and folder != str(Path.cwd()):
         os.chdir(folder)
     function = pickle.loads(packed)
@@ -231,7 +228,7 @@ COUNTED_EVERY_S: Final = 1.0
 
 
 def require_scheduler(address: str) -> None:
-    """Reject an address without ``://``, and a missing Dask, before the work begins; nothing is connected."""
+    """Raise an error for an address without ``://``, or if Dask is not installed; no connection is made."""
     if "://" not in address:
         raise ParameterError(
             "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, threads or processes."
@@ -240,12 +237,12 @@ def require_scheduler(address: str) -> None:
 
 
 def is_plain(address: str) -> bool:
-    """True if data travel unencrypted, and any client that reaches the scheduler can run programs."""
+    """True if the connection to a scheduler at this address is not encrypted, so that its network must be trusted."""
     return not address.startswith(("tls://", "wss://"))
 
 
 def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
-    """Workers of a scheduler; at the end the connection is closed. Certificates are those of Dask's configuration."""
+    """Connect to a Dask scheduler and return its workers as a crew; certificates are those of Dask's configuration."""
     require_scheduler(address)
     try:
         client = _distributed().Client(address, timeout=WAIT_S, name="skisnow")
@@ -289,14 +286,14 @@ class DaskCrew(Crew):
         return self._counted
 
     def require_alive(self) -> None:
-        """Raise an error if the scheduler is gone for long; a short interruption is tolerated."""
+        """Raise an error if the scheduler was unreachable for more than `AWAY_S` seconds or closed the connection."""
         if self._client.status == "running":
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
             raise SkisnowError(LOST_WORKERS).tag(LOST)
 
     def explain(self, error: Exception) -> Message | None:
-        """Explanation of an error of Dask."""
+        """Message that explains an error of Dask; for other errors as in `Crew`."""
         if isinstance(error, ImportError) or any(word in str(error) for word in _NOT_LOADED):
             return Message(
                 "A worker cannot load the computation ({error}). Install the same skisnow there.", error=error

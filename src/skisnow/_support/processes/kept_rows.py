@@ -51,10 +51,10 @@ class KeptRows:
 
     @classmethod
     def opened(cls, path: Path, fingerprint: str, *, about: Mapping[str, str] | None = None) -> Self:
-        """Open the file of a batch, or begin it; ParameterError if it has another fingerprint.
+        """Open the file of a batch, or create it; ParameterError if it has another fingerprint.
 
-        fingerprint: changes with anything that the rows follow from.
-        about: further entries of the batch for a new file.
+        fingerprint: hash of everything that determines the rows.
+        about: further entries by name that describe the batch, for a new file.
         """
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -73,7 +73,7 @@ class KeptRows:
 
     @classmethod
     def _locked(cls, path: Path, about: Mapping[str, str] | None = None) -> Self:
-        """Open and lock a file; `about` begins a new file, and must have the fingerprint of an existing one."""
+        """Open and lock a file; with `about` a new one is created, and an existing one must have its fingerprint."""
         with _errors(path):
             rows = cls(path)
         try:
@@ -112,7 +112,7 @@ class KeptRows:
             require_sound_pages(self._database)
 
     def about(self) -> dict[str, str]:
-        """Entries of the batch from its start."""
+        """Entries that describe the batch, such as its fingerprint, by name."""
         entries = dict(self._run_query("select name, value from about"))
         if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
             raise _damage_error(self.path, "the description of the batch has changed")
@@ -140,7 +140,7 @@ class KeptRows:
         return bool(list(self._run_query("select 1 from rows where number = ?", number)))
 
     def numbers(self) -> Iterator[int]:
-        """The finished points, in rising order."""
+        """Numbers of the finished points, in rising order."""
         return (number for (number,) in self._run_query("select number from rows order by number"))
 
     def row(self, number: int) -> Row:
@@ -150,11 +150,11 @@ class KeptRows:
         return row
 
     def rows(self) -> Iterator[tuple[int, Any]]:
-        """Points with their rows, in rising order."""
+        """Numbers of the finished points with their rows, in rising order."""
         return ((number, own_json(text)) for number, text in self.texts())
 
     def texts(self) -> Iterator[NumberedText]:
-        """Points with their rows as they are kept, in rising order."""
+        """Numbers of the finished points with their rows as JSON text, in rising order."""
         return self._select_checked_rows("order by number")
 
     def _select_checked_rows(self, which: str, *parameters: object) -> Iterator[NumberedText]:
@@ -174,7 +174,7 @@ class KeptRows:
         self._database.close()
 
     def remove(self) -> None:
-        """Remove the file of a completed batch whose rows were written elsewhere."""
+        """Close and delete the file of a completed batch whose rows were written elsewhere."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)  # while no one else has it
         self.close()
@@ -183,7 +183,7 @@ class KeptRows:
 
 
 def forget(path: Path) -> None:
-    """Remove the file of a batch, and the journal that a killed run left."""
+    """Delete the file of a batch, and SQLite's auxiliary files that a killed run left."""
     for name in (path.name, f"{path.name}-wal", f"{path.name}-shm"):
         path.with_name(name).unlink(missing_ok=True)
 
@@ -194,7 +194,7 @@ def json_text(value: Any) -> str:
 
 
 def _statements(database: sqlite3.Connection) -> list[tuple[str, str]]:
-    """Names of all tables and the statements that made them."""
+    """Names of all tables of a database with the SQL statements that created them."""
     return database.execute("select name, sql from sqlite_master where sql is not null order by name").fetchall()
 
 
@@ -208,7 +208,7 @@ def _checksum_of(about: Mapping[str, object]) -> str:
 
 @contextmanager
 def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> Iterator[None]:
-    """Turn an error of the database into one that names the file and the remedy."""
+    """Convert database errors in the block to errors of skisnow that name the file and the remedy."""
     try:
         yield
     except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text

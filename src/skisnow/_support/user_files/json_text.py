@@ -27,7 +27,7 @@ def read_json(path: str | Path, *, most_bytes: int = MOST_JSON_BYTES) -> Any:
 
 
 def json_value(text: str | bytes, *, title: str = "") -> Any:
-    """The value of a JSON text.
+    """Parse a JSON text of a user within limits.
 
     Raises ContentError: the text is not JSON (NaN and infinite numbers included), exceeds a limit (nesting, digits of a
         number, length of a text), repeats a key of an object, or contains an invalid character.
@@ -47,7 +47,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
 
 
 def own_json(text: str | bytes) -> Any:
-    """Value of a JSON text that skisnow wrote: without limits, and numbers may be infinite."""
+    """Parse a JSON text that skisnow wrote: without limits, and numbers may be infinite."""
     return json.loads(text)
 
 
@@ -110,7 +110,7 @@ def _matches_hint(value: object, hint: Any) -> bool:
 
 
 def json_number(value: float | None) -> float | None:
-    """The number, or None for numbers that JSON cannot represent.
+    """Number as float for JSON; None for None, NaN and infinity.
 
     >>> json_number(2), json_number(math.inf), json_number(math.nan), json_number(None)
     (2.0, None, None, None)

@@ -15,7 +15,7 @@ _WORDS: Final = {"yes": True, "y": True, "no": False, "n": False}
 
 
 def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
-    """Keys of the header of an OpenSim file as written, with their values.
+    """Values by key, as written, in the lines of the header of an OpenSim file.
 
     >>> head_of_motion(["Coordinates", "nRows = 2", "inDegrees=no"])
     {'nRows': '2', 'inDegrees': 'no'}
@@ -37,10 +37,10 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
 
 
 def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
-    """True if OpenSim reads the angles of a file in degrees; a version without a statement means radians.
+    """True if OpenSim reads the angles of a file in degrees: if its header states so; otherwise they are in radians.
 
-    Raises ParameterError: the header has neither a statement nor a version: OpenSim then reads degrees in .mot and
-        radians in .sto.
+    Raises ParameterError: the header of a .mot file has neither a statement nor a version, so that OpenSim reads
+        degrees.
     """
     stated = degrees_stated(path, head)
     if stated is None and "version" not in _header_values(head) and str(path).lower().endswith(".mot"):
@@ -52,7 +52,10 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
 
 
 def require_whole(path: str | Path, head: Mapping[str, str], **counts: int) -> None:
-    """ParameterError if the header states cells of several numbers, or other counts of its keys than the file has."""
+    """Raise a ParameterError if the header states cells of several numbers, or counts that differ from the file's.
+
+    counts: numbers of rows or the like in the file, by the key of the header.
+    """
     said = _header_values(head)
     kind = said.get("datatype", _ONE_NUMBER)
     if kind.lower() != _ONE_NUMBER:

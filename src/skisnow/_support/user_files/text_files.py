@@ -16,10 +16,10 @@ from ..messages import Message
 
 
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
-    """Read a file.
+    """Read the bytes of a regular file.
 
-    Raises ContentError: it is not there, may not be read, is not a plain file, or has more bytes; or no file can have
-        such a name.
+    Raises ContentError: the file does not exist, cannot be read, is not a regular file, or has more bytes; or the name
+        is invalid.
     """
     try:
         if not stat.S_ISREG((place := Path(path)).stat().st_mode):
@@ -69,9 +69,9 @@ class ContentError(ParameterError):
     """A file, or a text used instead of a file, cannot be read.
 
     what, fields: problem and allowed values, without the file.
-    line: line of the file, where one can be named.
-    title: the file, or another name of the text; empty until it is known.
-    sentence: the whole message, if it is not made of the others.
+    line: line of the file, or None.
+    title: name of the file or text; "" until it is known.
+    sentence: whole message, instead of one composed of the others.
     """
 
     def __init__(self, what: str, *, line: int | None = None, title: str = "", sentence: str = "") -> None:
@@ -79,14 +79,14 @@ class ContentError(ParameterError):
         self.what, self.line, self.title, self.sentence = what, line, title, sentence
 
     def tag(self, code: str, /, **fields: Any) -> Self:
-        """The same error with its code, and with fields in the template of its problem."""
+        """Set the code of the error and the fields of its problem's template; returns the same error."""
         self.what = as_template(self.what, fields)
         self.args = (self.sentence or _with_place(self.what, self.line, self.title),)
         self.code = code
         return self
 
     def of(self, title: str) -> ContentError:
-        """The same error with the title of the file."""
+        """New error with the same problem and line, and the title of the file."""
         return ContentError(self.what, line=self.line, title=title).tag(self.code)
 
 
@@ -123,10 +123,10 @@ Place: TypeAlias = tuple[str | int, ...]
 
 
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
-    """Reject overlong or invalid texts, too large or non-finite numbers, and too deep nesting.
+    """Raise a ContentError for overlong or invalid texts, too large or non-finite numbers, and too deep nesting.
 
-    infinite: whether a number may be infinite or NaN, as TOML allows when it is written so.
-    place: keys and numbers that lead to the value.
+    infinite: True if a number may be infinite or NaN, as TOML allows.
+    place: keys and indices that lead to the value, for messages.
     """
     if isinstance(value, str):
         _require_text(value, place, LONGEST_TEXT)
@@ -177,7 +177,7 @@ def _require_text(text: str, place: Place, longest: int) -> None:
 
 
 def named(place: Place) -> str:
-    """A place for a message.
+    """Text of a place in a file, its keys and indices, for a message.
 
     >>> named(("tool", 2, "name")), named(())
     ('tool[2].name', 'the value')
@@ -187,13 +187,13 @@ def named(place: Place) -> str:
 
 
 def shown(text: str, limit: int = 60) -> str:
-    """A text within a message: short, and nothing that does not print."""
+    """Text for a message: at most `limit` characters, and ? instead of characters that cannot be printed."""
     plain = "".join(letter if letter.isprintable() else "?" for letter in text[: limit + 1])
     return plain if len(plain) <= limit else plain[:limit] + "…"
 
 
 def shown_value(value: object, limit: int = 80, written: Callable[[object], str] = repr) -> str:
-    """A value within a message, shortened."""
+    """Text of a value for a message, by the function `written`, cut after `limit` characters."""
     try:
         text = written(value)
     except ValueError:  # an integer of more digits than Python writes
@@ -234,9 +234,9 @@ def toml_text(value: object) -> str:
 
 
 def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
-    """The keys and values of a TOML text.
+    """Parse a TOML text of a user within limits; a ContentError with the title of the text if it is not valid.
 
-    text: with line feeds at the ends of lines.
+    text: text with line feeds at the ends of lines.
     """
     try:
         if len(text) > MOST_TOML_BYTES:
@@ -264,7 +264,7 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
 
 
 def _require_short(text: str) -> None:
-    """Check brackets, words and dots before parsing: the parser's memory grows as the dots of a key squared."""
+    """Raise a ContentError for too deep brackets, long words or keys with many dots, which slow down the parser."""
     depth = dots = 0
     for token in _TOKENS.finditer(text):
         word = token[0]

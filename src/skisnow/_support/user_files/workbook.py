@@ -43,9 +43,9 @@ def workbook_sheets(
 ) -> dict[str, Rows | None]:
     """Read the sheets of a workbook.
 
-    wanted: True for the name of a sheet to read.
-    fractions: takes row and column, counted from 0, of each number with a fraction, by sheet; with it all such numbers
-        have a decimal point.
+    wanted: function that returns True for the name of a sheet to read.
+    fractions: dictionary to which row and column, from 0, of each number with a fraction are added, by sheet; all such
+        numbers then have a decimal point.
     Returns: rows by the names of the sheets, in their order; None for other sheets. Numbers have a decimal point, or a
         decimal comma where other cells of the sheet are numbers that were typed as text with a comma; days are written
         as 2026-11-23 and times as 2026-11-23T09:10:00, line breaks in a cell are spaces.
@@ -125,7 +125,7 @@ _STRIKE: Final = re.compile(rb"<(?:\w+:)?strike(?:\s+val=\"(?:1|true)\")?\s*/>")
 
 
 def _partly_struck(archive: zipfile.ZipFile, sheet: bytes) -> Iterable[tuple[int, int]]:
-    """Row and column of cells with a run of text that is struck through; openpyxl joins the runs of a cell."""
+    """Row and column (from 0) of cells with a part of their text struck through; openpyxl does not report these."""
     from openpyxl.utils.cell import coordinate_to_tuple
 
     name = next((name for name in archive.namelist() if name.lower().endswith("/sharedstrings.xml")), None)
@@ -142,7 +142,7 @@ def _partly_struck(archive: zipfile.ZipFile, sheet: bytes) -> Iterable[tuple[int
 
 
 def _call_openpyxl(doing: Callable[[], Any]) -> Any:
-    """Call openpyxl, and replace its dozen kinds of errors for damaged files by one."""
+    """Result of a call of openpyxl; each of its many errors for damaged files becomes a ContentError."""
     try:
         return doing()
     except ContentError:
@@ -239,7 +239,7 @@ def _require_small_parts(data: bytes) -> None:
 
 
 class _Part:
-    """Checker of the XML of one part of a workbook: its parser is fed in pieces; it stores nothing."""
+    """Checker of the XML of one part of a workbook, which its `parser` receives in pieces; raises ContentError."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -16,7 +16,7 @@ _LONGEST_REASON: Final = 100
 
 @dataclass(slots=True)
 class Element:
-    """An element: namespace, local name, attributes by local name, text before its first child, children."""
+    """Element of XML: namespace, local name, attributes by local name, text before the first child, children."""
 
     namespace: str
     name: str
@@ -44,7 +44,7 @@ class Element:
 
 
 class _Builder:
-    """Builder of the tree from the events of expat."""
+    """Builder of a tree of elements from the events of the XML parser expat."""
 
     def __init__(self) -> None:
         self.root: Element | None = None
@@ -79,7 +79,7 @@ class _Builder:
 
 
 def xml_tree(data: bytes) -> Element:
-    """Parse XML."""
+    """Parse XML of a user; returns the root element. Raises ContentError: not XML, or beyond a limit."""
     builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
