@@ -19,7 +19,7 @@ from skisnow.estimation.layering import layered, layering
 from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.estimation.screening import hardness_outliers, screened_penetration
 from skisnow.estimation.weather import weather_at_tests, weather_results
-from skisnow.interop.snowex import site_pit
+from skisnow.interop.site_pit import site_pit
 from tests.present import present
 
 from .conftest import MakeCampaign

@@ -15,7 +15,7 @@ from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile, SnowMicroPenSettings, snow_surface
 from skisnow.cli.shell import json_schema
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
-from skisnow.interop.snowex import site_pit
+from skisnow.interop.site_pit import site_pit
 from skisnow.report.campaign.summary import summary
 from skisnow.snow.measured_range import PENETROMETER_RELATIONS
 

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from .options import Parser, add_changes, number, scenario_of, whole_number
+from .options import Parser, add_changes, scenario_of, whole_number
 from .output import announced
 
 
@@ -14,26 +14,16 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     """Add ``skisnow convert`` to the program."""
     parser = commands.add_parser(
         "convert",
-        help="files between formats: CAAML, NetCDF, SnowMicroPen, SMET, SnowEx, OpenSim",
+        help="files between formats: CAAML, SnowMicroPen, OpenSim",
         description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML (.caaml, .xml) or a recording of a "
-        "SnowMicroPen (.pnt), and write OUT in the format that its ending tells: CAAML 6.0.3 (.caaml, .xml) or CSV "
-        "with the column names of SnowEx (.csv). A campaign also becomes NetCDF (.nc) with its readings. Weather in "
-        "SMET (.smet) becomes SMET 1.1 in SI, or CSV; .mot and .sto each other, markers (.trc, .c3d) each other.",
+        "SnowMicroPen (.pnt), and write OUT as CAAML 6.0.3 (.caaml, .xml). A recording also becomes layers of a run "
+        "(.csv), .mot and .sto become each other, markers (.trc, .c3d) become .trc.",
     )
     parser.add_argument("source", type=Path, metavar="IN", help="what is read")
-    parser.add_argument("target", type=Path, metavar="OUT", help="what is written; SnowEx's tables add to the name")
+    parser.add_argument("target", type=Path, metavar="OUT", help="what is written")
     parser.add_argument("--site", metavar="S", help="the site of a campaign, where it has several")
     parser.add_argument(
-        "--snow-height-cm",
-        type=number("cm", lowest=0, highest=100_000),
-        metavar="CM",
-        help="height of the snow on the ground, where IN does not say it: SnowEx counts from there",
-    )
-    parser.add_argument(
         "--time", metavar="TIME", help="day or time such as 2026-11-23T09:10, if IN has no time: CAAML requires one"
-    )
-    parser.add_argument(
-        "--forces", type=Path, metavar="FILE", help="a .mot or .sto whose columns go into a .c3d beside the markers"
     )
     parser.add_argument(
         "--layers-to-mm",
@@ -45,24 +35,21 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 
 def convert_file(options: argparse.Namespace) -> int:
-    """Convert a file into another format, and print the paths of the written files."""
-    from .._support.units import CM, MM
+    """Convert a file into another format, and print the path of the written file."""
+    from .._support.units import MM
 
     with announced(f"reading {options.source}"):
         from ..interop.convert import ConvertOptions, convert
 
-        height, depth = options.snow_height_cm, options.layers_to_mm
+        depth = options.layers_to_mm
         convert_options = ConvertOptions(
             site=options.site,
             time=options.time,
-            snow_height=None if height is None else height * CM,
-            forces=options.forces,
             layers_to=None if depth is None else depth * MM,
             report=lambda text: print(f"note: {text}", file=sys.stderr),
         )
-        written = convert(options.source, options.target, convert_options)
-    for path in written:
-        print(path)
+        convert(options.source, options.target, convert_options)
+    print(options.target)
     return 0
 
 

@@ -15,11 +15,9 @@ from .._support.errors import OutputError
 from .._support.staging import require_writable, staged, write_file
 from .._support.units import DEGREE, MM, STANDARD_GRAVITY
 from ..campaign import write_reference
-from ..campaign.smet import StationSeries
 from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
 from ..carving.equilibrium import carve
 from ..interop.caaml import caaml_text
-from ..interop.convert import smet_text
 from ..scenario import Plane, Scenario, load_scenario
 from ..simulation.simulated_run import simulate
 from ..track.projection import GeodeticPoint, earth_centred, geodetic
@@ -112,7 +110,7 @@ _HEADER_BYTES: Final = 512
 def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
     """Name and content of each snow sample."""
     yield "pit.caaml", caaml_text(sample_pit())
-    yield "weather.smet", smet_text(_weather_series(random))
+    yield "weather.smet", weather_smet(random)
     yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
 
 
@@ -136,7 +134,8 @@ def sample_pit() -> SnowPit:
     )
 
 
-def _weather_series(random: np.random.Generator) -> StationSeries:
+def weather_smet(random: np.random.Generator) -> str:
+    """SMET 1.1 of two days of a weather station, a row each hour at UTC+1."""
     hours = np.arange(0.0, 48.0)
     day = np.cos(2.0 * np.pi * (hours - 13.0) / 24.0)
     fields = {
@@ -145,9 +144,15 @@ def _weather_series(random: np.random.Generator) -> StationSeries:
         "TSS": 265.0 + 5.0 * day,
         "ISWR": np.clip(500.0 * day, 0.0, None),
     }
-    latitude, longitude, altitude = ORIGIN.latitude_deg, ORIGIN.longitude_deg, ORIGIN.height
-    time = START.timestamp() // 86400.0 * 86400.0 + 3600.0 * hours
-    return StationSeries("weather.smet", "synthetic station", latitude, longitude, altitude, 1.0, time, fields)
+    lines = ["SMET 1.1 ASCII", "[HEADER]", "station_id = syntheticstation", "station_name = synthetic station"]
+    lines += [f"latitude = {ORIGIN.latitude_deg}", f"longitude = {ORIGIN.longitude_deg}"]
+    lines += [f"altitude = {ORIGIN.height:g}", "nodata = -999", "tz = 1"]
+    lines += [f"fields = timestamp {' '.join(fields)}", "[DATA]"]
+    first = datetime(START.year, START.month, START.day, 1)
+    for hour, values in enumerate(zip(*(column.tolist() for column in fields.values()), strict=True)):
+        when = (first + timedelta(hours=hour)).isoformat()
+        lines.append(" ".join((when, *(f"{value:.10g}" for value in values))))
+    return "\n".join((*lines, ""))
 
 
 def snow_micro_pen_recording(random: np.random.Generator) -> bytes:

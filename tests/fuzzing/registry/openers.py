@@ -33,7 +33,6 @@ NO_READERS: Final[Mapping[str, str]] = {
     "report.sheet:render_template": "package data",
     "interop.fmu.writing:_write_fmu": "the library of the package",
     "interop.fmu.writing:_licence": "package data",
-    "interop.opensim.c3d:write_c3d": "the file that it has just written",
     "identification.data:fingerprint": "bytes for a SHA-256",
     "identification.result:identification_dict": "bytes for a SHA-256",
     "identification.data:_require_different": "bytes for a SHA-256",

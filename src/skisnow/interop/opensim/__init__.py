@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .c3d import read_c3d, write_c3d
+from .c3d import read_c3d
 from .motion_text import (
     BootMarkers,
     Markers,
@@ -24,7 +24,6 @@ __all__ = [
     "read_c3d",
     "read_motion",
     "read_trc",
-    "write_c3d",
     "write_motion",
     "write_trc",
 ]

@@ -1,35 +1,23 @@
-"""Markers of a .c3d file are read; markers with forces are written by ezc3d."""
+"""Markers of a .c3d file."""
 
 from __future__ import annotations
 
 import math
 import re
 import struct
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count, takewhile
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.environment import import_extra
-from ..._support.errors import OutputError, ParameterError
-from ..._support.messages import Message
-from ..._support.staging import require_ending, write_file
+from ..._support.errors import ParameterError
 from ..._support.user_files import ContentError, plain_bytes
-from .motion_text import METRES, MOST_BYTES, Markers, MotionTable
+from .motion_text import METRES, MOST_BYTES, Markers
 
-ENDING: Final = ".c3d"
-WRITTEN: Final = "mm"
-"""Unit of written places: that of most captures."""
-MOST_FRAMES: Final = 65_535
-"""That the format counts, from its frame 0 on."""
-MOST_NAMES: Final = 255
-OFF_FRAME: Final = 0.25
-"""Share of a frame by which a time may lie beside it, as rounded times of text files do: the format counts frames."""
 _GROUPS: Final = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS")
 """Lists of points that are not places, as gait programs write them."""
 _JOINT: Final = "ankle|knee|hip|pelvis|trunk|spine|thorax|waist|neck|head|shoulder|elbow|wrist|foot|toe|progress(ion)?"
@@ -39,7 +27,6 @@ _QUANTITY: Final = re.compile(
     re.IGNORECASE,
 )
 """Ends of the names that these programs give to such points, for files without the lists."""
-_UNITS: Final = {"_force_v": "N", "_force_p": "m", "_moment_": "Nm", "_torque_": "Nm"}  # by what a name contains
 
 
 def read_c3d(path: str | Path) -> Markers:
@@ -103,90 +90,6 @@ def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]
 
 def _texts_of(about: Mapping[str, Values], key: str) -> list[str]:
     return [word for word in about.get(key, ()) if isinstance(word, str)]
-
-
-def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None = None) -> None:
-    """Write markers, and forces as analogue channels, as a .c3d file; needs ezc3d (``skisnow[c3d]``).
-
-    Places are in millimetres; all numbers have the format's single precision. A marker without a position has a
-    negative residual, as the format requires.
-
-    markers: at a steady rate; the format counts frames from the time 0, up to 65,535.
-    path: Path that ends in .c3d.
-    forces: forces over the same time, at the markers' rate or a whole multiple: a channel for each column.
-    Raises ParameterError: ezc3d is not installed, the name ends otherwise, times are not those of frames, or there are
-        more frames or names than the format counts.
-    Raises OutputError: the place cannot be written.
-    """
-    path = Path(path)
-    require_ending(path, ENDING)
-    ezc3d = import_extra("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
-    rate, n = markers.rate, len(markers.time)
-    first = round(float(markers.time[0]) * rate)
-    _require_frames(path, "markers", markers.time, first / rate, rate)
-    _require_names(path, "markers", markers.names)
-    if first < 0 or first + n > MOST_FRAMES:
-        raise ParameterError(
-            "{path}: the markers' frames are {first} to {last}; .c3d counts frames from 0 to {most_frames}: shift "
-            "the times, or write a shorter stretch"
-        ).tag("out_of_range", path=path, first=first, last=first + n - 1, most_frames=MOST_FRAMES - 1)
-    c3d_file: Any = ezc3d.c3d()
-    point = c3d_file["parameters"]["POINT"]
-    point["RATE"]["value"], point["UNITS"]["value"] = [rate], [WRITTEN]
-    point["LABELS"]["value"] = list(markers.names)
-    c3d_file["header"]["points"]["first_frame"] = first
-    places = np.moveaxis(markers.place, (0, 1, 2), (2, 1, 0)) / METRES[WRITTEN]
-    c3d_file["data"]["points"] = np.concatenate([places, np.ones((1, *places.shape[1:]))])
-    unseen = ~np.isfinite(places).all(axis=0, keepdims=True)
-    c3d_file["data"]["meta_points"]["residuals"] = np.where(unseen, -1.0, 0.0)
-    if forces is not None:
-        _add_force_channels(c3d_file, path, markers, forces, first / rate)
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            place = Path(folder, f"written{ENDING}")  # ezc3d adds this ending to all other names
-            c3d_file.write(str(place))
-            content = place.read_bytes()
-    except (OSError, RuntimeError, ValueError) as error:
-        raise OutputError("{path} cannot be written as .c3d: {error}").tag(
-            "cannot_write", path=path, error=error
-        ) from error
-    write_file(path, content)
-
-
-def _add_force_channels(c3d_file: Any, path: Path, markers: Markers, forces: MotionTable, start: float) -> None:
-    """Add forces to an ezc3d file as analogue channels, at the markers' rate or a whole multiple of it."""
-    n = len(markers.time)
-    often, rest = divmod(len(forces.time), n)
-    if rest or not often:
-        raise ParameterError(
-            "{path}: forces have {n_time} rows for {n} frames; there must be a whole number for each frame"
-        ).tag("wrong_kind", path=path, n_time=len(forces.time), n=n)
-    rate = often * markers.rate
-    _require_frames(path, "forces", forces.time, start, rate)
-    _require_names(path, "forces", tuple(forces.columns))
-    analog = c3d_file["parameters"]["ANALOG"]
-    analog["RATE"]["value"], analog["LABELS"]["value"] = [rate], list(forces.columns)
-    analog["UNITS"]["value"] = [
-        next((unit for part, unit in _UNITS.items() if part in name), "") for name in forces.columns
-    ]
-    c3d_file["data"]["analogs"] = np.stack([*forces.columns.values()])[None]
-
-
-def _require_frames(path: Path, what: str, time: FloatArray, start: float, rate: float) -> None:
-    off = np.abs(time - start - np.arange(len(time)) / rate) * rate
-    if not np.all(off <= OFF_FRAME):
-        worst = int(np.argmax(off > OFF_FRAME))
-        raise ParameterError(
-            "{path}: {field} at {time!r} s are not at a frame of {rate:g} Hz from {start:g} s on; .c3d has one rate: "
-            "bring them to it first"
-        ).tag("wrong_rate", path=path, field=what, time=float(time[worst]), rate=rate, start=start)
-
-
-def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
-    if not 0 < len(names) <= MOST_NAMES:
-        raise ParameterError("{path}: {field} has {count} names; .c3d allows 1 to {limit}").tag(
-            "too_many", path=path, count=len(names), field=what, limit=MOST_NAMES
-        )
 
 
 Values: TypeAlias = Sequence[str] | Sequence[float]

@@ -1,132 +1,21 @@
-"""Snow pits of a campaign's sites, and their export as CSV with the column names of the NASA SnowEx campaigns.
-
-Heights are above the ground in cm, as in SnowEx; -9999 means unknown.
-"""
+"""Snow pits of a campaign's sites."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.spreadsheet_text import csv_text
-from .._support.staging import write_file
-from .._support.units import CM, MM
+from .._support.units import MM
 from ..campaign.records import Campaign, DensitySamples
 from ..campaign.snow_micro_pen import SnowMicroPenProfile
-from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
 from ..estimation import Analysis
 from ..estimation.regressions import HARDNESS_KEY, STRESS_KEY
 from ..estimation.snow_micro_pen import EvaluatedRecording
-
-NO_DATA: Final = "-9999"
-_SLACK: Final = 0.05
-"""In m: the height of the snow is measured at another place than the profile."""
-DENSITY: Final = ("# Top (cm)", "Bottom (cm)", "Density A (kg/m3)", "Density B (kg/m3)", "Density C (kg/m3)")
-TEMPERATURE: Final = ("# Depth (cm)", "Temperature (deg C)")
-STRATIGRAPHY: Final = (
-    "# Top (cm)", "Bottom (cm)", "Grain Size (mm)", "Grain Type", "Hand Hardness", "Manual Wetness", "Comments",
-)  # fmt: skip
-FORCE: Final = ("Depth (mm)", "Force (N)")
-
-
-def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
-    """Write the tables of a pit: ``NAME_density.csv``, ``NAME_temperature.csv`` and ``NAME_stratigraphy.csv``.
-
-    pit: with the height of the snow: SnowEx counts from the ground.
-    path: ``NAME.csv``; tables without a row are not written.
-    Returns: the files.
-    Raises ParameterError: the height of the snow is not known or less than the depth of a layer, or the pit has no
-        table.
-    Raises OutputError: a file cannot be written.
-    """
-    path = Path(path)
-    height = pit.snow_height
-    if height is None:
-        raise ParameterError(
-            "SnowEx counts heights from the ground, and the snow height of {name!r} is not known: give it with "
-            "--snow-height-cm"
-        ).tag("unknown_name", name=pit.name)
-    _require_above_ground(pit, height)
-    densities = [
-        (*_top_and_bottom(height, density), f"{density.snow_density:g}", NO_DATA, NO_DATA) for density in pit.densities
-    ]
-    temperatures = [
-        (_centimetre_text(height - observed.depth), f"{observed.temperature_C:g}") for observed in pit.temperatures
-    ]
-    tables: dict[str, list[tuple[str, ...]]] = {
-        "density": [DENSITY, *densities],
-        "temperature": [TEMPERATURE, *temperatures],
-        "stratigraphy": [STRATIGRAPHY, *(_layer_cells(height, layer) for layer in pit.layers)],
-    }
-    head = (
-        ("# Location", pit.region or NO_DATA),
-        ("# Site", pit.name),
-        ("# PitID", pit.name),
-        ("# Date/Local Time", pit.time or NO_DATA),
-        ("# Latitude", _number_text(pit.latitude_deg)),
-        ("# Longitude", _number_text(pit.longitude_deg)),
-        ("# HS (cm)", _centimetre_text(pit.snow_height)),
-    )
-    written = []
-    for name, (columns, *rows) in tables.items():
-        if rows:
-            written.append(path.with_name(f"{path.stem}_{name}.csv"))
-            write_file(written[-1], csv_text((*head, columns, *rows)))
-    if not written:
-        raise ParameterError("{name!r} has no layers, densities or temperatures; nothing was written").tag(
-            "no_data", name=pit.name
-        )
-    return tuple(written)
-
-
-def _require_above_ground(pit: SnowPit, height: float) -> None:
-    layers: tuple[SnowLayer | LayerDensity, ...] = (*pit.layers, *pit.densities)
-    deepest = max((layer.top + (layer.thickness or 0.0) for layer in layers), default=0.0)
-    deepest = max(deepest, *(temperature.depth for temperature in pit.temperatures), 0.0)
-    if deepest > height + _SLACK:
-        raise ParameterError(
-            "{name!r}: the snow height is {height_cm:g} cm, but the profile is {deepest_cm:g} cm deep. Correct the "
-            "height or the depths."
-        ).tag("out_of_range", name=pit.name, height_cm=height / CM, deepest_cm=deepest / CM)
-
-
-def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
-    """Write a recording of a SnowMicroPen as depth and force, from the first sample on.
-
-    Raises OutputError: the file cannot be written.
-    """
-    depth, force = (profile.depth / MM).tolist(), profile.force.tolist()
-    rows = ((f"{where:.6f}", f"{newtons:.6f}") for where, newtons in zip(depth, force, strict=True))
-    head = [("# Name", profile.name), ("# Date", profile.recorded_on.isoformat() if profile.recorded_on else NO_DATA)]
-    head += [("# Latitude", _number_text(profile.latitude_deg)), ("# Longitude", _number_text(profile.longitude_deg))]
-    write_file(path, csv_text((*head, FORCE, *rows)))
-    return Path(path)
-
-
-def _layer_cells(height: float, layer: SnowLayer) -> tuple[str, ...]:
-    size = NO_DATA if layer.grain_size is None else f"{layer.grain_size / MM:g}"
-    hardness = "/".join(filter(None, (layer.hardness, layer.hardness_bottom))) or NO_DATA
-    form = layer.grain_form or NO_DATA
-    return (*_top_and_bottom(height, layer), size, form, hardness, NO_DATA, layer.comment)
-
-
-def _top_and_bottom(height: float, layer: SnowLayer | LayerDensity) -> tuple[str, str]:
-    bottom = None if layer.thickness is None else height - layer.top - layer.thickness
-    return _centimetre_text(height - layer.top), _centimetre_text(bottom)
-
-
-def _centimetre_text(length: float | None) -> str:
-    return NO_DATA if length is None else f"{length / CM:.10g}"
-
-
-def _number_text(value: float | None) -> str:
-    return NO_DATA if value is None else f"{value:.10g}"
-
 
 BLOCK: Final = 1.0 * MM
 """Forces of a SnowMicroPen are given as means over it (modelling assumption): a pit holds hundreds, not thousands."""
