@@ -72,7 +72,7 @@ def read_caaml(path: str | Path) -> SnowPit:
 
 
 class _Profile:
-    """Parser of one file; errors name the element."""
+    """Parser of one CAAML file; each error is a FieldDataError that names the element."""
 
     def __init__(self, file: str, root: Element) -> None:
         self._file = file
@@ -92,7 +92,7 @@ class _Profile:
             )
         self._measured = measured
         self._is_version_6 = "v6" in root.namespace
-        height = self._height()
+        height = self._total_snow_height()
         self._from_ground = measured.attributes.get("dir", "top down") != "top down"
         if self._from_ground and height is None:
             action = Message("Add snowPackCond/hS, or export it top down.")
@@ -105,7 +105,7 @@ class _Profile:
         )
 
     def pit(self) -> SnowPit:
-        """The snow pit with all quantities that are read."""
+        """Snow pit of the file, with all quantities that skisnow reads."""
         root, measured = self._root, self._measured
         place = root.child("locRef", "ObsPoint") or root.child("locRef") or root
         latitude, longitude = self._position(place)
@@ -123,19 +123,19 @@ class _Profile:
             slope_angle_deg=self._quantity(ANGLE, place, "validSlopeAngle", "SlopeAnglePosition", "position"),
             snow_height=self._snow_height,
             air_temperature_C=self._quantity(TEMPERATURE, measured.child("weatherCond") or measured, "airTempPres"),
-            layers=tuple(self._layer(*pair) for pair in self._of("stratProfile", "Layer")),
+            layers=tuple(self._layer(*pair) for pair in self._children_by_profile("stratProfile", "Layer")),
             densities=self._densities(),
-            temperatures=tuple(self._temperature(*pair) for pair in self._of("tempProfile", "Obs")),
+            temperatures=tuple(self._temperature(*pair) for pair in self._children_by_profile("tempProfile", "Obs")),
             forces=tuple(self._forces(pair) for pair in measured.named("hardnessProfile")),
             snow_hardness=self._plate_value("snowHardness", SNOW_HARDNESS),
             failure_shear_stress=self._plate_value("failureShearStress", SHEAR_STRESS),
         )
 
-    def _of(self, profile: str, name: str) -> list[tuple[Element, Element]]:
-        """Pairs of profile and layer or observation, for all profiles of a kind."""
+    def _children_by_profile(self, profile: str, name: str) -> list[tuple[Element, Element]]:
+        """Pairs of profile and child for all profiles of a name, such as "tempProfile", and children of a name."""
         return [(parent, child) for parent in self._measured.named(profile) for child in parent.named(name)]
 
-    def _height(self) -> float | None:
+    def _total_snow_height(self) -> float | None:
         components = self._measured.child("snowPackCond", "hS", "Components")
         if components is not None:
             return self._quantity(LENGTH, components, "height")
@@ -147,7 +147,7 @@ class _Profile:
         return next(filter(None, (record.text_of(*path) for record in records if record for path in paths)), "")
 
     def _aspect(self, place: Element, *path: str) -> str:
-        """A compass point, or a number of degrees as text."""
+        """Aspect of the slope at a path below an element: a compass point, or degrees as text; "" if unknown."""
         text = place.text_of(*path)
         is_number = text.replace(".", "", 1).isdecimal()
         return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._text_or_empty(text)
@@ -193,7 +193,7 @@ class _Profile:
         )
 
     def _densities(self) -> tuple[LayerDensity, ...]:
-        densities = tuple(self._density(*pair) for pair in self._of("densityProfile", "Layer"))
+        densities = tuple(self._density(*pair) for pair in self._children_by_profile("densityProfile", "Layer"))
         middle = median(density.snow_density for density in densities) if densities else LIGHTEST
         if 0.0 < middle < LIGHTEST:
             self._refuse(
@@ -211,7 +211,7 @@ class _Profile:
         return LayerDensity(top, density, thickness)
 
     def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
-        depth = self._down("depth", self._required_number(LENGTH, profile, observed, "depth"))
+        depth = self._depth_below_surface("depth", self._required_number(LENGTH, profile, observed, "depth"))
         temperature = self._required_number(TEMPERATURE, profile, observed, "snowTemp")
         self._require_within("snowTemp", temperature, _TEMPERATURES, "°C")
         return DepthTemperature(depth, temperature)
@@ -252,10 +252,10 @@ class _Profile:
         top = self._required_number(LENGTH, profile, layer, "depthTop")
         if self._from_ground:
             self._require_within("thickness", thickness or 0.0, (0.0, top + _SLACK), "m")
-        return self._down("depthTop", top), thickness
+        return self._depth_below_surface("depthTop", top), thickness
 
-    def _down(self, element: str, value: float) -> float:
-        """Depth from the surface, also if the profile gives heights from the ground."""
+    def _depth_below_surface(self, element: str, value: float) -> float:
+        """Depth from the surface (m) for a value of the profile (m), which may be a height from the ground."""
         top = (self._snow_height or 0.0) if self._from_ground else _DEEPEST
         self._require_within(element, value, (-_SLACK, top + _SLACK), "m")
         return top - value if self._from_ground else value
@@ -284,7 +284,7 @@ class _Profile:
     def _quantity(
         self, units: CaamlUnits, parent: Element, *path: str, profile: Element | None = None, words: bool = False
     ) -> float | None:
-        """A number converted from the unit of its element, of one that contains it, or of its profile."""
+        """Number at a path, converted to skisnow's unit; None if it is missing, or a text where `words` allows one."""
         text = parent.text_of(*path)
         if text.lower() in NIL or (words and not any(character.isdigit() for character in text)):
             return None
@@ -333,9 +333,9 @@ _MEANINGLESS: Final = re.compile(r"[\s^*·]")
 
 @dataclass(frozen=True, slots=True)
 class CaamlUnits:
-    """Units of one kind of quantity.
+    """Units of CAAML for one kind of quantity, and their conversion.
 
-    standard: unit of a value without ``uom``: that of the CAAML standard.
+    standard: unit of a value without the attribute ``uom``, by the CAAML standard.
     sizes: shift and factor of each unit: the result is (value + shift) × factor.
     """
 
@@ -353,7 +353,7 @@ class CaamlUnits:
 
 
 def _proportional(factor: float, *units: str) -> dict[str, tuple[float, float]]:
-    """Zero point (0) and factor of each of the units."""
+    """Shift (0) and factor of each of these units, for `CaamlUnits.sizes`."""
     return dict.fromkeys(units, (0.0, factor))
 
 

@@ -42,18 +42,18 @@ class Problem:
         return str(self.message)
 
     def text(self, language: str) -> str:
-        """The problem in one line of a language."""
+        """One line in a language with severity, code and sentence of the problem."""
         return self.message.text(language)
 
     @property
     def message(self) -> Message:
-        """The problem in one line with its severity and code."""
+        """One line with severity, code and sentence of the problem."""
         severity = _SEVERITIES[self.severity]
         return Message("{severity} {code}: {problem}", severity=severity, code=self.code, problem=self.sentence)
 
     @property
     def sentence(self) -> Message:
-        """Place, problem, allowed values and fix."""
+        """Text with place, value, allowed values and fix, without severity and code."""
         place: str = self.file
         if self.row is not None:
             place = Message("{place}, row {row}", place=place, row=self.row)
@@ -68,7 +68,7 @@ class Problem:
         return Message("{place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=value)
 
     def as_dict(self) -> dict[str, str | int | None]:
-        """Give the problem as the object of ``skisnow check --json``."""
+        """Fields of the problem by name, as in the JSON of ``skisnow check --json``."""
         entry = asdict(self)
         del entry["needs_action"]
         return entry
@@ -81,7 +81,7 @@ warning: Final = partial(Problem, "warning")
 
 
 def with_sheet_name(problem: Problem, places: Mapping[str, str]) -> Problem:
-    """A problem of a table that is a sheet of a workbook, under the sheet's name."""
+    """Copy of a problem with workbook and sheet instead of the CSV file, if the table is a sheet; else unchanged."""
     place = places.get(problem.file)
     return problem if place is None else replace(problem, file=place)
 
@@ -180,7 +180,7 @@ class QualityFlag:
 
     @property
     def name(self) -> Message:
-        """Name in lists, one of `_FLAG_NAMES`."""
+        """Readable name of the flag in lists, such as "too few loads"."""
         return Message(self.code.replace("_", " "))
 
 

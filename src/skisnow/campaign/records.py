@@ -49,7 +49,7 @@ class PenetrationSeries(Shown):
 
 
 class _Readings(Shown):
-    """Readings of experiments, one experiment after the other."""
+    """Base of readings of several experiments in arrays, one experiment after the other, with offsets `first`."""
 
     __slots__ = ()
     first: IntArray
@@ -205,7 +205,7 @@ class ShearTests(Shown):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class DensitySamples(Shown):
-    """Samples of a density cutter: ρ in kg/m³, depth of the middle and thickness in m or NaN.
+    """Samples of a density cutter: ρ (kg/m³), depth of the sample's middle and its thickness (m), or NaN.
 
     ``further`` as in `PenetrationTests`.
     """
@@ -228,7 +228,7 @@ class DensitySamples(Shown):
 
     @property
     def in_profile(self) -> BoolArray:
-        """True for samples with a depth that were not cancelled."""
+        """Mask of the samples that have a depth and were not cancelled."""
         return np.isfinite(self.sample_depth) & (np.array(self.cancelled) == "")
 
 

@@ -31,11 +31,11 @@ _ROUNDING: Final = 1e-9  # relative; limits and readings come from decimal milli
 
 
 def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended") -> dict[str, BoolArray]:
-    """Flag the penetration series.
+    """Quality flags of the penetration series, without those of `NEED_HARDNESS`.
 
     campaign: the campaign; without penetration tests the masks are empty.
     geometry: form of the ski piece, ``"extended"`` or ``"paper"``; it decides on ``beyond_tool``.
-    Returns: for each code but those of `NEED_HARDNESS`, in the order of `QUALITY_FLAGS`, a mask over the experiments.
+    Returns: mask over the experiments for each code, in the order of `QUALITY_FLAGS`.
     """
     tests = campaign.penetration
     if tests is None:
@@ -50,7 +50,7 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
 
 
 def _bad_readings(campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> dict[str, BoolArray]:
-    """True (n,) for readings with a flag, by code; the codes of `_OF_UNLOADING` are about readings of the unloading."""
+    """Masks over the readings (n,) that cause a flag, by code; those of `_OF_UNLOADING` are over unloading readings."""
     series, depth, starts = tests.series_of_reading, tests.penetration_depth, tests.first[:-1]
     begins, largest = (np.zeros(len(depth), dtype=np.bool_) for _ in range(2))
     begins[starts] = True
@@ -71,7 +71,7 @@ def _bad_readings(campaign: Campaign, tests: PenetrationTests, geometry: Geometr
 
 
 def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
-    """Flag the shear tests: masks over them for ``cancelled``, ``zero_depth`` and ``below_resolution``."""
+    """Quality flags of the shear tests: masks over them for ``cancelled``, ``zero_depth``, ``below_resolution``."""
     tests = campaign.shear
     depth = tests.penetration_depth if tests is not None else np.zeros(0)
     return {
@@ -198,7 +198,7 @@ def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, 
 
 
 def _number(value: float) -> Message:
-    """The value, with the decimal sign of the language in which a problem is shown."""
+    """Message of a number, so that it gets the decimal sign of the language in which a problem is shown."""
     return Message("{value:.10g}", value=value)
 
 
@@ -244,7 +244,7 @@ def _penetration_problems(
 def _flag(
     campaign: Campaign, code: str, file: str, row: int, experiment: str, value: str | None, **fields: object
 ) -> Problem:
-    """Problem of a flag; further fields of the template of the allowed values."""
+    """Problem of severity ``flag`` for an experiment; `fields` fill the template of the allowed values."""
     action = (
         Message("The experiment is kept and counted, but not included in the estimates.")
         if code in campaign.excluding

@@ -114,7 +114,7 @@ def parse_smet(name: str, data: bytes) -> StationSeries:
 
 
 class _Reading:
-    """Parser of one file; errors name the line."""
+    """Parser of one SMET file; each error is a FieldDataError that names the line."""
 
     def __init__(self, file: str, data: bytes) -> None:
         self._file = file
@@ -139,7 +139,7 @@ class _Reading:
         raise FieldDataError([problem])
 
     def _split(self) -> tuple[dict[str, tuple[int, str]], int]:
-        """Keys of the header with their lines, and the line before the first row."""
+        """Line and text of each key of the header, and the line of ``[DATA]``, below which the rows begin."""
         header: dict[str, tuple[int, str]] = {}
         for row, line in enumerate(self._lines, start=1):
             plain = _COMMENT.sub("", line).strip()
@@ -184,7 +184,7 @@ class _Reading:
         return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
 
     def _in_si(self, table: FloatArray, names: Sequence[str]) -> FloatArray:
-        """A table in SI, by the order of offset and multiplier of the file's version."""
+        """Table of the readings converted to SI by ``units_offset`` and ``units_multiplier`` of the header."""
         offsets, factors = self._units("units_offset", 0.0, names), self._units("units_multiplier", 1.0, names)
         with np.errstate(over="ignore", invalid="ignore"):
             offset_first = self._version in _OFFSET_FIRST
@@ -213,7 +213,7 @@ class _Reading:
                 self._refuse(line, name, f"median {median:g}", f"a median {allowed}", f"State {fix}.")
 
     def _require_no_gap(self, names: Sequence[str], table: FloatArray, values: FloatArray) -> None:
-        """Reject numbers of loggers for missing values that are not the file's nodata and impossible in SI."""
+        """Reject numbers that loggers write for missing values, such as -999, if the header states another one."""
         for name, raw, column in zip(names, table.T, values.T, strict=True):
             gaps = raw[np.isin(raw, _GAPS) & (column < _PLAUSIBLE[name][0])] if name in _PLAUSIBLE else raw[:0]
             if gaps.size:

@@ -275,10 +275,10 @@ class SnowSurface:
 
 
 def snow_surface(force: FloatArray, sample_distance: float, *, rise: float, hold: float) -> SnowSurface | None:
-    """Find the surface: the first block from which the force stays ``rise`` above that in air over ``hold``.
+    """Find the snow surface: the first depth from which the force stays ``rise`` above that in air over ``hold``.
 
-    force: N, from the first sample on; rise in N, above 0; sample_distance and hold in m.
-    Returns None if it is not found.
+    force: force (N) of each sample of the recording, `sample_distance` (m) apart; rise (N) above 0; hold (m).
+    Returns None if there is no such depth.
 
     Example: a spike at 12 mm, snow from 30 mm.
 

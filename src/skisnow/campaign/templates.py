@@ -32,7 +32,7 @@ PLATE_LENGTH_MM: Final = design.PLATE_LENGTH * 1e3
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A table with one example row: cells by the names of the columns."""
+    """Template of a table of a new campaign: its columns, and the cells of an example row by column."""
 
     form: TableForm
     example: Mapping[str, str | float]
@@ -82,14 +82,14 @@ TEMPLATES: Final = (
 
 
 def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
-    """Key, cell and quantity of each value of a new campaign with this name."""
+    """Key, default text and quantity of each value that campaign.toml of a new campaign with this name lists."""
     loads = "; ".join(f"{load:g}" for load in design.LOADS)
     cells = {"name": name, "gauge_resolution_mm": "0.01", "load_steps_N": loads}
     yield from ((key, cells.get(key, ""), quantity) for key, quantity in CAMPAIGN_KEYS.items())
 
 
 def campaign_toml(name: str) -> str:
-    """The text of campaign.toml."""
+    """Text of campaign.toml of a new campaign with this name."""
     keys = "".join(_toml_line(*entry) for entry in keys_with_values(name))
     tables = "".join(
         f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explanations())

@@ -25,7 +25,7 @@ _NAME: Final = re.compile(r"[^\W_][\w .()-]{0,59}")
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """Answers by option.
+    """Answers of the user to questions of an import, by option of the command.
 
     table: table ("penetration", or "-" for none) by heading row, as SHEET:ROW.
     column, unit: column or "-", and unit, by heading, or by TABLE.HEADING.
@@ -52,16 +52,16 @@ class Answers:
         return cls(**{kind: dict(_split(kind, text) for text in options.get(kind) or ()) for kind in IMPORT_ANSWERS})
 
     def with_(self, kind: str, key: str, value: str) -> Self:
-        """The same with one more answer."""
+        """Copy with one more answer: value of an option `kind` for a key."""
         return replace(self, **{kind: {**getattr(self, kind), key: value}})
 
     def updated(self, other: Answers) -> Self:
-        """The same with the answers of another, which count instead of own ones."""
+        """Copy with the answers of another object, which override those of this one."""
         names = [entry.name for entry in fields(self)]
         return replace(self, **{name: {**getattr(self, name), **getattr(other, name)} for name in names})
 
     def of_heading(self, kind: str, table: str, heading: str) -> str:
-        """Answer for a heading of a table, otherwise ""."""
+        """Answer of an option `kind` for TABLE.HEADING, or else for the heading; "" without one."""
         plain = {plain_heading(key): value for key, value in getattr(self, kind).items()}
         return plain.get(plain_heading(f"{table}.{heading}"), plain.get(plain_heading(heading), ""))
 
@@ -88,7 +88,7 @@ def _split(kind: str, text: str) -> tuple[str, str]:
 
 
 def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
-    """Answers of an earlier import.
+    """Read the answers of an earlier import.
 
     place: name of a saved template, folder of a campaign, or a campaign.toml.
     named: folder of the saved templates (default: the user's own).
@@ -109,14 +109,14 @@ def saved_templates(folder: Path | None = None) -> dict[str, Path]:
 
 
 def _templates_folder(folder: Path | None) -> Path:
-    """The folder, or that of the user's own templates, next to the user's own store."""
+    """The same folder; for None that of the user's own templates, in the user's data folder."""
     from platformdirs import user_data_path
 
     return folder or user_data_path("skisnow") / TEMPLATES
 
 
 def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> Path:
-    """Save the mapping of an import under a name; returns the file.
+    """Save the answers of an import as a template under a name; returns the path of its file.
 
     name: letters, digits, spaces and ``-_.()``; its first character is a letter or digit.
     campaign: contents of the campaign.toml of the import.
@@ -140,7 +140,7 @@ def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> 
 
 
 def parse_template(text: str, name: str) -> Answers:
-    """Answers in the text of a campaign.toml; `name` is its name in messages. Errors as `read_template`."""
+    """Answers of an import from the text of a campaign.toml; `name`: name in messages; errors as `read_template`."""
     return _template_answers(toml_values(text.replace("\r\n", "\n")), name)
 
 
@@ -160,7 +160,7 @@ def _template_answers(values: Mapping[str, Any], name: str) -> Answers:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A question that no heading, row of units or note answers.
+    """A question of an import that no heading, row of units or note of the file answers.
 
     option, key: option of the command, and the name before its equals sign.
     choices: possible answers; () for any text.
@@ -196,7 +196,7 @@ IMPORT_OR_NOT: Final = {"yes": Message("yes (import it)"), "no": Message("no (le
 
 @dataclass(slots=True)
 class Dialogue:
-    """Answers of the user, with the open questions and errors so far."""
+    """State of an import: answers of the user, and the open questions and errors so far."""
 
     answers: Answers
     open: list[Question | Problem] = field(default_factory=list)
@@ -212,7 +212,7 @@ class Dialogue:
         proposed: str = "",
         row: int | None = None,
     ) -> None:
-        """Add a question with its error, which names the option."""
+        """Add a question about a key of an option, with the error for a missing answer at place, row and value."""
         answer = key if option == "ignore" else f"{key}={proposed or 'ANSWER'}" if key else proposed or "ANSWER"
         text = f'--{option} "{answer}"'
         words = [IMPORT_OR_NOT.get(choice, choice) if key in {"hidden", "struck"} else choice for choice in choices]
@@ -226,7 +226,7 @@ class Dialogue:
         self.open.append(Question(option, key, choices, proposed, problem))
 
     def refuse(self, code: str, place: str, **further: Any) -> None:
-        """Add an error; parameters as of the function `error`."""
+        """Add an error at a sheet or table; parameters as of `problems.error`."""
         self.open.append(error(code, place, **further))
 
     def has_asked(self, option: str, key: str) -> bool:

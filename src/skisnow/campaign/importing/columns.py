@@ -34,8 +34,8 @@ from .sheets import EXCLUDED, FROM_NOTES, HIDDEN, column_letters
 class ColumnChoice:
     """A column of a table to import.
 
-    place: column of the sheet, from 0.
-    heading: as written.
+    place: index of the column on the sheet, from 0.
+    heading: heading as written.
     column: column of the campaign's table, or the heading for a column that is kept as text; "" if it is ignored.
     unit: conversion of its numbers; None for a text, or if the unit is open.
     """
@@ -47,12 +47,12 @@ class ColumnChoice:
 
 
 def number_columns(form: TableForm) -> list[str]:
-    """Columns whose numbers are interpreted."""
+    """Names of a table's columns with numbers that skisnow interprets."""
     return [column.name for column in form.numbers if column.name not in form.further]
 
 
 def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes: Sequence[Note]) -> list[ColumnChoice]:
-    """Columns of a section; open questions and errors are added to the dialogue."""
+    """Choose the campaign's column and the unit for each column of a section; questions are added to the dialogue."""
     if section.sheet.hidden_columns & set(section.columns) and HIDDEN not in dialogue.answers.cells:
         dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
@@ -107,7 +107,7 @@ def _ask_for_columns(section: Section, form: TableForm, stated: Sequence[str], d
 def _stated_units(
     form: TableForm, heading: str, column: str, below: str, dialogue: Dialogue, notes: Sequence[Note]
 ) -> set[str]:
-    """Units that answer, heading, the cell below it in a row of units, and notes state for a column."""
+    """All units that are stated for a column: by answer, heading, row of units (`below`) and notes."""
     answer = known_unit(dialogue.answers.of_heading("unit", form.name, heading))
     named = folded_unit(column) if heading == column else named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
@@ -163,7 +163,7 @@ MEASURED: Final = ("edge_angle_deg", "load_N", "depth_mm", "lever_arm_mm", "mome
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Cells of a row that are in no table."""
+    """Text of a sheet's row outside of tables."""
 
     sheet: str
     row: int
@@ -207,7 +207,7 @@ def stated_plates(notes: Iterable[Note]) -> set[str]:
 
 
 def _is_unclear(note: Note) -> bool:
-    """True if a note limits its own statement, or has lengths of something else."""
+    """True if a note has a word such as "about", "not" or "from", or a length that belongs to no tool or blade."""
     rest = TOOL.sub("", DISC.sub("", _GAUGE.sub("", note.text)))
     rest = PLATE.sub(lambda match: "" if match[1] and match[1] != "-" else match[0], rest)
     return bool(_QUALIFIED.search(note.text) or _LENGTH_LEFT.search(rest))
@@ -247,7 +247,7 @@ def units_in_notes(column: str, notes: Iterable[Note]) -> set[str]:
 
 
 def is_about_numbers(note: Note) -> bool:
-    """True for a note that may change measured numbers: a load or moment, or a word for a number with a limit to it."""
+    """True for a note that may change the measurements: it has a load or moment, or a column's name with a number."""
     words = letters(note.text).split()
     synonyms = {word for column in MEASURED for word in SYNONYMS[column] if len(word) > 2}
     named = any(

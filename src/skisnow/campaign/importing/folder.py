@@ -31,7 +31,7 @@ def description(
     plates: Iterable[ToolText],
     notes: Sequence[Note],
 ) -> str:
-    """Text of campaign.toml; the step of the gauge only if the notes agree."""
+    """Text of campaign.toml for an imported file (name and bytes), with the answers as a template for later imports."""
     title, gauges = PurePath(name).stem, gauge_steps_mm(notes)
     lines = [f"name = {toml_text(title)}", f"observers = {toml_text(stated_observers(notes))}"]
     lines += [f"gauge_resolution_mm = {step:g}" for step in gauges if len(gauges) == 1]
@@ -47,7 +47,7 @@ def description(
 
 
 def campaign_files(tables: Mapping[str, str], described: str, name: str, data: bytes) -> dict[str, bytes]:
-    """Contents of the folder by path, with a record of their hashes for the undo."""
+    """Files of the new campaign by path: tables, campaign.toml (`described`), the imported file, and their hashes."""
     texts = {CAMPAIGN_FILE: described, **tables}
     files = {path: text.encode() for path, text in texts.items()} | {f"{ORIGINAL}/{PurePath(name).name}": data}
     hashes = {path: hashlib.sha256(content).hexdigest() for path, content in files.items()}
@@ -113,14 +113,14 @@ _CYLINDER: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class ToolText:
-    """A tool of campaign.toml: its name, and its other keys with values."""
+    """A tool or blade for campaign.toml: its name, and its other keys with their values as TOML."""
 
     name: str
     keys: tuple[tuple[str, str], ...]
 
 
 def parse_tool(name: str, text: str) -> ToolText | None:
-    """Tool of a text; None for any other text.
+    """Tool from its shape and lengths as text, named `name` or else by the text; None if the text is not a tool.
 
     >>> parse_tool("", "ski 20 x 6,2 cm").keys
     (('shape', '"ski"'), ('length_mm', '200'), ('width_mm', '62'))
@@ -144,7 +144,7 @@ def _tool_text(name: str, shape: str, **lengths: tuple[str, str]) -> ToolText:
 
 
 def parse_plate(name: str, text: str) -> ToolText | None:
-    """Blade from its length as text, such as "100 mm", by `name` or else that text; None for any other text."""
+    """Blade from its length as text, such as "100 mm", named `name` or else by the text; None if it is not a length."""
     match = PLATE.fullmatch(text.strip())
     return ToolText(name or text.strip(), (("length_mm", f"{length_mm(match[2], match[3]):g}"),)) if match else None
 
@@ -156,7 +156,7 @@ _READING: Final = {"tool": (stated_tools, parse_tool, TOOL_FORM), "plate": (stat
 def described_tools(
     kind: Literal["tool", "plate"], tables: Sequence[ImportedTable], dialogue: Dialogue, notes: Sequence[Note]
 ) -> dict[tuple[str, str], ToolText]:
-    """Tools or blades by sheet and by the name in the table, "" without a name."""
+    """Tools or blades by sheet and name in the table ("" without one); the dialogue asks about unclear ones."""
     stated_in, parse, form = _READING[kind]
     answers: Mapping[str, str] = getattr(dialogue.answers, kind)
     with_tables = {table.section.sheet.name for table in tables}

@@ -97,7 +97,7 @@ def _choose_table_form(section: Section, dialogue: Dialogue) -> TableForm | None
 
 
 def _notes(sheets: Sequence[Sheet], sections: Sequence[Section]) -> tuple[Note, ...]:
-    """Cells outside of tables by row, and rows in tables with a single cell."""
+    """Notes: texts of each row that are outside of tables, or the only cell of a row in a table."""
     notes = []
     for sheet in sheets:
         inside = [section for section in sections if section.sheet.name == sheet.name]
@@ -123,7 +123,7 @@ def _import_table(section: Section, form: TableForm, dialogue: Dialogue, notes: 
 
 
 def _is_about_table(note: Note, sheet: str, with_tables: set[str]) -> bool:
-    """True for a note on the sheet of a table, or on a sheet without tables."""
+    """True for a note on this sheet, or on a sheet that is not among those `with_tables`."""
     return note.sheet == sheet or note.sheet not in with_tables
 
 
@@ -158,7 +158,7 @@ def _with_names(
     notes: Sequence[Note],
     described: tuple[Mapping[tuple[str, str], ToolText], Mapping[tuple[str, str], ToolText]],
 ) -> list[ImportedTable]:
-    """Tables with sites, tools, days and unique names of tests in each row."""
+    """Copies of the tables with site, tool or blade (`described`), day, and a unique name of the test in each row."""
     with_tables = {table.section.sheet.name for table in tables}
     tools, plates = described
     named = []
@@ -181,7 +181,7 @@ def _with_names(
 
 
 def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: Sequence[Note]) -> list[Note]:
-    """Notes between a table and the one above it if they state a site, otherwise all notes of the sheet."""
+    """Notes from which the site of a table follows: those just above it if they state one, else all of the sheet."""
     section = table.section
     own = [note for note in notes if note.sheet == section.sheet.name]
     ends = [other.section.end for other in tables if other.section.sheet.name == section.sheet.name]
@@ -204,9 +204,9 @@ def _choose_site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Se
 
 
 def _unique(tables: Sequence[ImportedTable], dialogue: Dialogue) -> list[ImportedTable]:
-    """Tables whose tests have the site in their names where a name occurs in several tables of a kind.
+    """Copies of the tables with the site before each name of a test that occurs in several tables of a kind.
 
-    If a site has the name in several tables, the sheet is put before it, too, after a question.
+    If a site has the name in several tables, the sheet is also put before it, after a question.
     """
     by_site = _renamed(tables, _repeated_names(tables), lambda _, row: row.cells["site"])
     again = _repeated_names(by_site)
@@ -237,7 +237,7 @@ def _repeated_names(tables: Sequence[ImportedTable]) -> dict[str, set[str]]:
 def _renamed(
     tables: Sequence[ImportedTable], files: Collection[str], before: Callable[[ImportedTable, StoredRow], str]
 ) -> list[ImportedTable]:
-    """Tables of these files with a word before each name of a test."""
+    """Copies of the tables; in those of these CSV files each name of a test is preceded by the text of `before`."""
     return [
         replace(
             table,
@@ -254,7 +254,7 @@ def _renamed(
 
 
 def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:
-    """Text of each CSV file, merged from all tables of its kind, with the columns that they have."""
+    """Text of each CSV file of the campaign, merged from the rows of all tables of its kind."""
     by_form: dict[TableForm, list[dict[str, str]]] = {}
     for table in tables:
         if table.rows:
@@ -268,7 +268,7 @@ def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:
 
 
 def _template(answers: Answers, tables: Sequence[ImportedTable]) -> Answers:
-    """Answers with the columns and units of the tables, for an import of a like file."""
+    """Answers extended by the columns and units of the tables, as a template for the import of a similar file."""
     for table in tables:
         for choice in table.columns:
             if choice.column != choice.heading and choice.column:
@@ -281,7 +281,7 @@ def _template(answers: Answers, tables: Sequence[ImportedTable]) -> Answers:
 def _problems(
     name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTable], *, is_stated: bool
 ) -> tuple[Problem, ...]:
-    """Errors of the campaign, with sheet and row of the file."""
+    """Errors of the proposed campaign, at sheets and rows of the file; also an impossible H_V unless `is_stated`."""
     try:
         campaign = campaign_of_files(files)
     except FieldDataError as failure:
@@ -293,7 +293,7 @@ def _problems(
 
 
 def _far_from_snow(name: str, campaign: Campaign) -> Iterator[Problem]:
-    """An error for a median H_V that no snow has: columns are exchanged, or a stated unit is wrong."""
+    """Error for an impossible median H_V of a campaign: columns may be exchanged, or a unit wrong."""
     if (tests := campaign.penetration) is None:
         return
     last = tests.first[1:] - 1
@@ -315,7 +315,7 @@ def _far_from_snow(name: str, campaign: Campaign) -> Iterator[Problem]:
 
 
 def _at_source(name: str, problem: Problem, tables: Sequence[ImportedTable]) -> Problem:
-    """The problem with the sheet and row of the imported file instead of those of the CSV file."""
+    """Copy of a problem with sheet and row of the imported file instead of the CSV file and its row."""
     places = [
         (table.section.sheet.name, row.source)
         for table in tables

@@ -35,7 +35,7 @@ FILL_DOWN: Final = "fill-down"
 
 @dataclass(frozen=True, slots=True)
 class StoredRow:
-    """A row as it is stored, with its row in the sheet, from 1."""
+    """A row of a campaign's table, cells by column, and its row number on the imported sheet, from 1."""
 
     source: int
     cells: dict[str, str]
@@ -43,11 +43,11 @@ class StoredRow:
 
 @dataclass(frozen=True, slots=True)
 class ImportedTable:
-    """A table of the file as it is imported.
+    """A table of the imported file, converted to a table of the campaign.
 
-    section, form: the table on the sheet, and the table of the campaign.
-    columns: columns with their units.
-    rows: rows as they are stored.
+    section, form: table on the sheet, and form of the campaign's table.
+    columns: columns of the sheet with their columns in the campaign and units.
+    rows: rows as the campaign stores them.
     """
 
     section: Section
@@ -59,7 +59,7 @@ class ImportedTable:
 def stored_rows(
     section: Section, choices: Sequence[ColumnChoice], form: TableForm, dialogue: Dialogue
 ) -> list[StoredRow]:
-    """Rows with a cell below a heading of required numbers; open questions and errors are added to the dialogue."""
+    """Convert the rows of a section that have a required number; questions and errors are added to the dialogue."""
     sheet, numbers = section.sheet, number_columns(form)
     needed = {column.name for column in form.numbers if column.needed}
     places = [choice.place for choice in choices if choice.column in needed and choice.place in section.own]
@@ -99,7 +99,7 @@ def stored_rows(
 
 
 def _decimal_mark(section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], dialogue: Dialogue) -> str:
-    """Decimal mark of typed numbers; a question if each of them may have a thousands separator instead."""
+    """Decimal mark of numbers that are text; a question is added if they may have thousands separators instead."""
     sheet = section.sheet
     typed = [
         sheet.cell(row, choice.place)
@@ -125,12 +125,12 @@ def _decimal_mark(section: Section, choices: Sequence[ColumnChoice], rows: Seque
 
 
 def _without_groups(text: str, mark: str) -> str:
-    """The text without its thousands separators if they cannot be decimal marks."""
+    """Text of a number without its thousands separators, if it clearly has some; otherwise unchanged."""
     return re.sub(rf"[^\d+{mark}-]", "", text) if _GROUPED[mark].fullmatch(text) else text
 
 
 def _number(section: Section, row: int, choice: ColumnChoice, text: str, mark: str, dialogue: Dialogue) -> str:
-    """A number in the unit of its column."""
+    """Text of a number, converted to the unit of its column; "" with a question or an error if it is unclear."""
     sheet = section.sheet
     written = "." if (row, choice.place) in sheet.fractions else mark
     plain = _without_groups(text.replace("−", "-"), written)
@@ -157,7 +157,7 @@ def _number(section: Section, row: int, choice: ColumnChoice, text: str, mark: s
 def _fill_down(
     section: Section, row: int, cells: dict[str, str], above: dict[str, str], form: TableForm, dialogue: Dialogue
 ) -> None:
-    """Fill blank names, and blank angles within a test, from the row above if the user says so."""
+    """Fill blank names and angles in `cells` from the row `above` if the user answered so; otherwise add a question."""
     for name in (*form.names, "edge_angle_deg"):
         if name not in cells or cells[name] or not above.get(name):
             continue
@@ -169,7 +169,7 @@ def _fill_down(
 
 
 def _is_excluded(section: Section, row: int, places: Sequence[int], dialogue: Dialogue) -> bool:
-    """True if the user leaves out rows that are hidden or have cells that are struck through; a question without it."""
+    """True if the user excludes rows like this one, hidden or struck through; adds a question without an answer."""
     reasons = [
         reason for reason, cells in section.sheet.excluded.items() if any((row, place) in cells for place in places)
     ]
@@ -183,7 +183,7 @@ def _is_excluded(section: Section, row: int, places: Sequence[int], dialogue: Di
 def _refuse_split_numbers(
     section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], numbers: Sequence[str], dialogue: Dialogue
 ) -> None:
-    """Add an error for whole numbers in a column of texts behind one of numbers: decimal commas that separate cells."""
+    """Add an error if decimal commas of a CSV file seem to have split numbers into two cells."""
     if section.sheet.separator != ",":
         return
     for before, choice in pairwise(choices):
@@ -197,7 +197,7 @@ def _refuse_split_numbers(
 
 
 def _refuse_strays(section: Section, rows: Sequence[int], dialogue: Dialogue) -> None:
-    """Add errors for numbers next to the rows of a table, below no heading: a separator may have split a number."""
+    """Add errors for cells to the right of a table that have no heading: a separator may have split a number."""
     sheet = section.sheet
     for row in rows:
         right = section.own.stop

@@ -20,13 +20,13 @@ _FEWEST_HEADINGS: Final = 2
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A table on a sheet; rows and columns count from 0.
+    """Position of a table on a sheet; rows and columns count from 0.
 
-    sheet: the sheet; a series of several has further columns at the right for the texts above it.
+    sheet: sheet; for one of several series, with further columns at the right for the texts above it.
     header, start, end: first row of the headings, first row below headings and units, and row behind the last one.
-    columns: columns of the sheet.
+    columns: indices of its columns on the sheet.
     headings, units: headings, and cells of the row of units, "" without one, for each column.
-    own: columns that no other series has.
+    own: columns that belong to no other series of the table.
     titles: rows above the headings with a text for each series.
     is_last: True if no series follows in the next column.
     """
@@ -44,11 +44,11 @@ class Section:
 
     @property
     def key(self) -> str:
-        """Sheet and row of the headings, as answers name the table."""
+        """Name of the table in answers, SHEET:ROW with the row of its headings."""
         return f"{self.sheet.name}:{self.header + 1}"
 
     def qualified(self) -> bool:
-        """True if the row above has several words, not notes, and one of them is above a heading of numbers."""
+        """True if the row above has several words, one above a heading of numbers: they may qualify the headings."""
         above = [self.sheet.cell(self.header - 1, column) for column in self.columns] if self.header else []
         words = [(text, heading) for text, heading in zip(above, self.headings, strict=False) if text]
         return (
@@ -59,7 +59,7 @@ class Section:
         )
 
     def has(self, row: int, column: int) -> bool:
-        """True for a cell of the table or of its titles; a single text in a row is a note."""
+        """True if a cell belongs to the table or its titles; a row with a single text is a note instead."""
         if row in self.titles and column < self.own.stop:
             return True
         if not self.header <= row < self.end or column not in self.columns:
@@ -69,7 +69,7 @@ class Section:
 
 
 def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
-    """Tables of a sheet in their order, also side by side; `tables` are answers by heading row."""
+    """Find the tables of a sheet from top to bottom, also side by side; `tables`: the user's answers by SHEET:ROW."""
     heads: list[tuple[int, range, int]] = []
     below: set[int] = set()
     for row in range(len(sheet.rows)):
@@ -99,7 +99,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
 
 
 def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range]) -> Iterator[range]:
-    """Column groups whose headings run over this row and the next: a hyphen joins them, or neither row is complete."""
+    """Column groups whose headings are split over this row and the next, by a hyphen or because both are needed."""
     if row + 1 >= len(sheet.rows) or sheet.ignores_row(row + 1):
         return
     lower = list(_groups(sheet, (row + 1,)))
@@ -121,7 +121,7 @@ def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range]) -> Iterat
 
 
 def _is_part(text: str) -> bool:
-    """True for a text that may be the second part of a heading: neither blank nor a unit, and without a value."""
+    """True for a text that may be the second part of a heading: neither blank nor a unit, and without digits."""
     plain = re.sub(r"[\[(/].*", "", text)
     return not _is_unit(text) and not re.search(r"\d", plain)
 
@@ -147,7 +147,7 @@ def _stated_columns(heading: str) -> set[str]:
 
 
 def _groups(sheet: Sheet, rows: Sequence[int]) -> Iterator[range]:
-    """Neighbouring columns with a cell that is not blank in one of the rows."""
+    """Ranges of at least two neighbouring columns that have a text in one of the rows."""
     width = max(len(sheet.filled[row]) for row in rows)
     filled = [any(sheet.cell(row, column, filled=True) for row in rows) for column in range(width)]
     start = 0
@@ -159,7 +159,7 @@ def _groups(sheet: Sheet, rows: Sequence[int]) -> Iterator[range]:
 
 
 def _table_groups(sheet: Sheet, row: int) -> list[range]:
-    """Column groups with cells on a row; empty columns separate groups unless only the whole row makes a table."""
+    """Ranges of columns with texts on a row, separated by empty columns, unless only all together make a table."""
     groups = list(_groups(sheet, (row,)))
     end = next((at for at in range(row, len(sheet.filled)) if not any(sheet.filled[at])), len(sheet.filled))
     headed = [column for column in range(len(sheet.filled[row])) if sheet.cell(row, column, filled=True)]
@@ -179,7 +179,7 @@ def _table_groups(sheet: Sheet, row: int) -> list[range]:
 
 
 def _is_complete(sheet: Sheet, row: int, columns: range) -> bool:
-    """True if headings state or are likely to state all required columns of a table that no note can replace."""
+    """True if the headings of a row have all required columns of a table, except those that notes can state."""
     texts = [text for text in _row_texts(sheet, row, columns) if text]
     return any(
         set(form.required) - set(FROM_NOTES) <= set(likely_columns(form, texts).values()) for form in KINDS.values()
@@ -191,7 +191,7 @@ def _row_texts(sheet: Sheet, row: int, columns: range) -> list[str]:
 
 
 def _is_header(cells: Sequence[str]) -> bool:
-    """True for at least two headings of a table, one with a unit, and no number or unit."""
+    """True if cells can be headings: at least two columns of a table, one with a unit, and no number or unit."""
     if any(is_plain_number(cell) or known_unit(cell.strip("[]()")) for cell in cells):
         return False
     return any(
@@ -202,7 +202,7 @@ def _is_header(cells: Sequence[str]) -> bool:
 
 
 def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
-    """Stated or likely columns by heading."""
+    """Columns of a table by the heading that states or probably means them."""
     stated = {heading: column for heading in headings if (column := stated_column(form, heading))}
     return columns_by_synonym(form, headings) | stated
 
@@ -251,7 +251,7 @@ def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
 
 
 def _split_series(sections: Sequence[Section]) -> list[Section]:
-    """One section for each series of the tables on a row, whose columns repeat: load, depth, load, depth.
+    """Split tables with repeated columns (load, depth, load, depth) into one section for each series.
 
     Series share the columns on their left that do not repeat. If no column names the tests, each row above the
     headings with one text for each series becomes a column with this text in all rows of the series.
@@ -271,7 +271,7 @@ def _names_tests(headings: Sequence[str]) -> bool:
 
 
 def _repeated_parts(section: Section) -> list[Section]:
-    """Parts of a table whose headings repeat without a rest, the shared columns in each; else the table."""
+    """Parts of a table whose headings repeat as a whole, each with the shared columns; else only the table itself."""
     words = [heading_words(heading) for heading in section.headings]
     times = Counter(words)
     starts = [place for place, word in enumerate(words) if word == next((w for w in words if w and times[w] > 1), None)]
@@ -296,7 +296,7 @@ def _repeated_parts(section: Section) -> list[Section]:
 
 
 def _with_titles(series: Sequence[Section]) -> list[Section]:
-    """Series side by side, with one more column for each title above them, added at the right of the sheet."""
+    """Copies of series that are side by side, each with a further column for each row of titles above them."""
     first = series[0]
     sheet, row = first.sheet, first.header
     while row and not sheet.ignores_row(row - 1) and all(len(_filled(sheet, row - 1, p.own)) == 1 for p in series):
@@ -331,7 +331,7 @@ def _filled(sheet: Sheet, row: int, columns: range) -> list[int]:
 
 @dataclass(frozen=True, slots=True)
 class _Title:
-    """Texts above series, as a column: its heading and unit, and each series' value with its row and column."""
+    """A row of titles above series, as a column: heading, unit, and by series its value with the cell it is from."""
 
     heading: str
     unit: str
@@ -339,7 +339,7 @@ class _Title:
 
 
 def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
-    """Columns of a row above series: a label at its left names them, or words before the values do."""
+    """Columns from a row of titles above series; their headings are a label at the left or words in the titles."""
     sheet = series[0].sheet
     places = [_filled(sheet, row, part.own)[0] for part in series]
     label = next((text for column in range(series[0].own.start)[::-1] if (text := sheet.cell(row, column))), "")
@@ -367,7 +367,7 @@ def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
 
 
 def _named_value(text: str) -> tuple[str, str]:
-    """Heading and value of a text such as "Versuch 1" or "Kantwinkel: 30°"; no heading if no column has the name."""
+    """Split a text such as "Versuch 1" or "Kantwinkel: 30°" into heading and value; heading "" if it is no column."""
     ends = [match for match in re.finditer(r"[\s:=]+(?=\S)", text) if not re.search(r"\d", text[: match.start()])]
     return next(
         ((text[: end.start()], text[end.end() :]) for end in ends[::-1] if _stated_columns(text[: end.start()])),
@@ -376,9 +376,9 @@ def _named_value(text: str) -> tuple[str, str]:
 
 
 def table_of(section: Section, answers: Answers) -> TableForm | None:
-    """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None.
+    """Form of the campaign's table for a section: the user's answer, or the one whose required numbers are all there.
 
-    It is also None if another table has a needed number that the best one does not have.
+    Of several forms that with the most numbers counts; None if it is unclear.
     """
     answer = answers.table.get(section.key, "")
     if answer in KINDS:
@@ -401,7 +401,7 @@ def table_of(section: Section, answers: Answers) -> TableForm | None:
 
 
 def likely_table(section: Section) -> str:
-    """Name of the table with the most needed numbers among its likely columns, then with the largest share of them."""
+    """Name of the campaign's table that the headings of a section probably mean, by its required numbers."""
 
     def fit(form: TableForm) -> tuple[int, float]:
         needed = {column.name for column in form.numbers if column.needed}

@@ -26,11 +26,11 @@ EXCLUDED: Final = {HIDDEN: Message("a hidden row, column or sheet"), STRUCK: Mes
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A sheet of a file.
+    """A sheet of an imported workbook, or an imported CSV file.
 
     name: title of the sheet; name of a CSV file without its ending.
     rows, filled: cells as written, and with the first cell of each merged range in all rows of the range.
-    fractions: row and column of cells of `filled` that are numbers, not text: they have a decimal point.
+    fractions: row and column of cells of `filled` that the workbook stores as numbers; they have a decimal point.
     separator: separator of a CSV file, "" for a workbook.
     excluded: row and column of cells that the author may have excluded, by reason: HIDDEN or STRUCK.
     partly_struck, hidden_columns: cells with a part that is struck through, and hidden columns.
@@ -73,7 +73,7 @@ class Sheet:
 
 
 def column_letters(column: int) -> str:
-    """Name of a column in a spreadsheet, counted from 0.
+    """Letters that name a column in a spreadsheet, from its index from 0.
 
     >>> column_letters(0), column_letters(27)
     ('A', 'AB')
@@ -85,9 +85,9 @@ def column_letters(column: int) -> str:
 def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int] | None = None) -> list[Sheet]:
     """Read all sheets of a file that are not empty.
 
-    name, data: the file.
-    count: number of known headings in a row, by which the separator of a CSV file is found; default: those of
-        campaigns.
+    name, data: name and bytes of the file.
+    count: function that counts known headings in a row, for the separator of a CSV file (default: headings of
+        campaigns).
     Raises ContentError or ParameterError: it is not a workbook or a CSV file, or is beyond a limit.
     """
     if not is_workbook(name):
@@ -103,7 +103,7 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
 
 
 def _sheet(title: str, rows: Rows, layout: Layout, fractions: set[tuple[int, int]]) -> Sheet:
-    """Sheet with the first cell of each merged range in all its rows."""
+    """Sheet of a workbook from its rows and layout; merged ranges have their first cell in all their rows."""
     filled = [list(cells) for cells in rows]
     for top, left, bottom, _ in layout.merged:
         if top >= len(rows) or left >= len(rows[top]):
@@ -130,7 +130,7 @@ def _sheet(title: str, rows: Rows, layout: Layout, fractions: set[tuple[int, int
 
 
 def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> tuple[Rows, str]:
-    """Rows of a CSV file by line, and the separator that yields the most headings."""
+    """Rows of a CSV file, row i from line i + 1, and the separator, the one that yields the most headings."""
     try:
         text = decode(data)
         named = named_separator(text.text[:1000])

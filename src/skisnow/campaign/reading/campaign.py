@@ -40,7 +40,7 @@ ATTACHMENTS: Final = "attachments.csv"
 
 
 class _ReadFiles(Container[str]):
-    """Names of the files of a campaign, of workbooks, and of files that tables can name."""
+    """Container that has every name of a file that a campaign may read: tables, workbooks, recordings, weather."""
 
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or "/" in name:
@@ -100,11 +100,11 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
 def campaign_of_cells(
     description: str, cells: Mapping[str, Cells], corrections: tuple[AppliedCorrection, ...] = ()
 ) -> Campaign:
-    """Check a campaign whose tables are in memory.
+    """Check a campaign whose tables are in memory and convert it to records.
 
     description: text of campaign.toml.
-    cells: tables by file, with their corrections applied.
-    corrections: these corrections.
+    cells: tables by the name of their file, with their corrections applied.
+    corrections: the corrections that were applied to these cells.
     Raises FieldDataError: as `read_campaign`.
     """
     raw = _RawCampaign(FilesInMemory({}), applied=corrections)
@@ -145,7 +145,7 @@ def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
 
 @dataclass(slots=True)
 class _RawCampaign(RawFiles):
-    """Contents of a campaign's files before conversion to records."""
+    """Tables and other contents of a campaign's files, and their problems, before the conversion to records."""
 
     described: CampaignFile | None = None
     tables: dict[str, Table] = field(default_factory=dict)
@@ -156,13 +156,13 @@ class _RawCampaign(RawFiles):
     weather: CampaignWeather | None = None
 
     def add_table(self, table: Table | None) -> None:
-        """Add a table that can be read, and the problems of its rows."""
+        """Add a table and the problems of its rows; nothing for None, a table that cannot be read."""
         if table is not None:
             self.tables[table.form.file] = table
             self.problems.extend(check_rows(table, self.described))
 
     def sorted_problems(self) -> tuple[Problem, ...]:
-        """Problems in the order of the files and rows, with the names of sheets."""
+        """All problems in the order of files and rows, at sheets of workbooks if the tables are such."""
         problems = self.problems
         if {form.file for form in TABLES} <= self.absent:
             allowed = Message("at least one of {files}", files=[form.file for form in TABLES])
@@ -223,7 +223,7 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
 
 
 def read_description(files: RawFiles) -> CampaignFile | None:
-    """Read campaign.toml and corrections.csv; the files get their headings, corrections and problems."""
+    """Read campaign.toml and corrections.csv; `files` gets their headings, corrections and problems."""
     described = _read_campaign_toml(files)
     if described is not None:
         files.headings = described.headings

@@ -168,7 +168,7 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
 
 
 def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:
-    """Valid tools by name, names of all tools, and names of tools with a flat base."""
+    """Tools with valid lengths by name, names of all tools, and names of tools without an edge."""
     tools: dict[str, Tool] = {}
     names: set[str] = set()
     flat: set[str] = set()
@@ -213,7 +213,7 @@ def _required_length(entry: TomlValues, quantity: Quantity) -> float | None:
 
 
 def _in_si(entry: TomlValues, quantity: Quantity) -> float | None:
-    """A number in SI, with a warning if it is a length that is probably not in mm."""
+    """Number of a key in SI, None if missing or invalid; adds a warning for a length that is probably not in mm."""
     value = entry.number(quantity)
     if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
         low, high = quantity.usual
@@ -228,7 +228,7 @@ def _in_si(entry: TomlValues, quantity: Quantity) -> float | None:
 
 
 def _excluding(top: TomlValues) -> frozenset[str]:
-    """Codes of the quality flags that exclude: the file's list or the default, and those that always exclude."""
+    """Codes of the quality flags that exclude experiments: those of the file or the default, and `ALWAYS_EXCLUDE`."""
     screening = top.table("screening")
     screening.refuse_misspelt(("exclude",))
     if "exclude" not in screening.values:
@@ -243,14 +243,14 @@ def _excluding(top: TomlValues) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A shape of a tool: its class, and True if it has an edge that can be tilted."""
+    """Shape of a tool: class of its geometry, and True if it has an edge, so that it can be tilted."""
 
     tool: type[Tool]
     has_edge: bool
 
     @property
     def lengths(self) -> dict[str, Quantity]:
-        """Lengths of the shape by their keys in campaign.toml."""
+        """Quantities of the shape's lengths by their keys in campaign.toml."""
         return {length.name: length for length in own_quantities(self.tool)}
 
 

@@ -70,10 +70,10 @@ class FilesInMemory(CampaignFiles):
 
 @dataclass(slots=True)
 class RawFiles:
-    """Reader of the files of one campaign, with the problems so far.
+    """Reader of the files of one campaign that collects their problems.
 
-    problems: takes the problems.
-    headings, corrections: mapping of headings to columns, and corrections of each table, once they are read.
+    problems: problems so far.
+    headings, corrections: mapping of headings to columns, and corrections by table, once they are read.
     hashes: SHA-256 of each file that was read.
     absent: names of missing files.
     """
@@ -86,7 +86,7 @@ class RawFiles:
     absent: set[str] = field(default_factory=set)
 
     def read(self, name: str) -> bytes | None:
-        """Bytes of a file; None if it is missing, or cannot be read, which is reported."""
+        """Bytes of a file; None if it is missing, or if it cannot be read, which is added to the problems."""
         try:
             data = self.files.read(name)
         except FileNotFoundError:
@@ -146,7 +146,7 @@ WEATHER_ENDING: Final = ".smet"
 def _read_named_file(
     files: RawFiles, name: str, ending: str, form: Message, refuse: Callable[[Message], None]
 ) -> bytes | None:
-    """Bytes of a file that a table or campaign.toml names; None, with an error, without one of this form."""
+    """Bytes of a file that a table or campaign.toml names; otherwise None, after `refuse` (`form`: an allowed name)."""
     if "/" in name or "\\" in name or not name.lower().endswith(ending):
         refuse(form)
         return None
@@ -158,7 +158,7 @@ def _read_named_file(
 
 
 def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]:
-    """Read and check all files that the table names; problems are reported with the row, up to `MOST_LISTED`."""
+    """Read and check the recordings that a table names; returns their bytes by name. Problems are added to `files`."""
     contents: dict[str, bytes] = {}
     if table is None or table.absent:
         return contents
@@ -192,7 +192,7 @@ def _read_recording(table: Table, row: int, name: str, files: RawFiles) -> bytes
 
 
 def _repeated_names(table: Table, column: str) -> list[Problem]:
-    """Errors for recordings and files that are repeated, as they would count twice; at most `MOST_LISTED`."""
+    """Errors, at most `MOST_LISTED`, for texts that occur in several rows of a column, as they would count twice."""
     first: dict[str, int] = {}
     problems: list[Problem] = []
     for row, name in enumerate(table.names[column].cells()):
@@ -205,7 +205,7 @@ def _repeated_names(table: Table, column: str) -> list[Problem]:
 
 
 def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeather | None:
-    """Read the station's file; None if none is named, or if it cannot be read, which is reported."""
+    """Read the weather station's file; None if none is named, or if it cannot be read, which is a problem."""
     name = settings.file
     if not name:
         return None

@@ -22,7 +22,7 @@ from .table_forms import UNLOADING, TableForm, allowed_words
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """Some rows of a file: their lines, the cells with the name of the experiment, and the list of problems."""
+    """Some rows of a file: line and experiment's name (`key`) of each, and the list to which problems are added."""
 
     file: str
     line: Sequence[int]
@@ -30,7 +30,7 @@ class Rows:
     problems: list[Problem]
 
     def refuse(self, code: str, index: int, column: str, value: str, allowed: str, action: str) -> None:
-        """Add the error of one cell, with its file, line and experiment."""
+        """Add an error for the cell of a column in the row with this index, with its file, line and experiment."""
         row, name = self.line[index], self.key[index].strip() or None
         self.problems.append(
             error(code, self.file, row=row, column=column, experiment=name, value=value, allowed=allowed, action=action)
@@ -41,12 +41,12 @@ class Collector(Protocol):
     """Collects the cells of one column, several rows at a time."""
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:
-        """Convert cells; errors are added to the problems of the rows."""
+        """Convert and store the cells of some rows; errors are added to the problems of the rows."""
 
 
 @dataclass(frozen=True, slots=True)
 class NameColumn:
-    """A column of text with few distinct values: the values, and the number of the value in each row."""
+    """A column of text with few distinct values: these values, and for each row the index of its value."""
 
     names: tuple[str, ...]
     code: IntArray
@@ -58,16 +58,16 @@ class NameColumn:
         return blank[self.code]
 
     def __getitem__(self, index: int) -> str:
-        """One cell."""
+        """Text of the cell in the row with this index."""
         return self.names[self.code[index]]
 
     def cells(self) -> tuple[str, ...]:
-        """Text of the cell of each row."""
+        """Texts of the cells of all rows."""
         return tuple(map(self.names.__getitem__, self.code.tolist()))
 
 
 class _NameCodes(dict[str, int]):
-    """Code of the name by the text of its cell: names, without outer blanks, are numbered as they first appear."""
+    """Index of the name in a cell by the cell's text; names without outer blanks are numbered as they first appear."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -99,7 +99,7 @@ class NameCollector:
                 rows.refuse("out_of_range", index, self._column, "", allowed, action)
 
     def column(self, count: int) -> NameColumn:
-        """The column; blank if the file does not have it."""
+        """Column of the collected names; `count` blank ones if the file does not have the column."""
         if not self._parts:
             return NameColumn(("",), np.zeros(count, dtype=np.int64))
         return NameColumn(tuple(self._codes.code_of_name), np.concatenate(self._parts))
@@ -155,7 +155,7 @@ class NumberCollector:
         )
 
     def column(self, count: int) -> FloatArray:
-        """The column; NaN if the file does not have it."""
+        """Numbers of the collected cells; `count` times NaN if the file does not have the column."""
         return np.concatenate(self._parts) if self._parts else np.full(count, np.nan)
 
 
@@ -177,10 +177,10 @@ class TextCollector:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table after reading: n rows in the order of the file, numbers in the units of the columns' names.
+    """A table as read from a file: n rows in its order, numbers in the units of the columns' names.
 
     form: required and allowed columns.
-    row: file line of each row.
+    row: line of the file of each row.
     names: required and interpreted optional text columns, also if the file does not have them.
     numbers: all columns of numbers of the form; NaN for blank, missing and invalid cells.
     further: other columns of the file, also unknown ones, as text.
@@ -203,11 +203,11 @@ class Table:
         return len(self.row)
 
     def error(self, row: int, code: str, column: str, value: str, allowed: str, action: str) -> Problem:
-        """Error of the cell in a column and the row with this index."""
+        """Error, to be reported by the caller, for the cell of a column in the row with this index."""
         return error(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 
     def warning(self, row: int, code: str, column: str | None, value: str, allowed: str, action: str) -> Problem:
-        """Warning of the cell in a column and the row with this index."""
+        """Warning, to be reported by the caller, for the cell of a column in the row with this index."""
         return warning(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 
     def _problem_place(self, row: int, column: str | None) -> dict[str, Any]:
@@ -260,7 +260,7 @@ def is_unloading_cell(cell: str) -> bool:
 
 
 def is_unloading(branch: NameColumn) -> BoolArray:
-    """True for each row that is a reading of the unloading."""
+    """Mask (n,) of the rows that are readings of the unloading."""
     return np.array(list(map(is_unloading_cell, branch.names)), dtype=np.bool_)[branch.code]
 
 
@@ -294,7 +294,7 @@ _CLOCK_ALONE: Final = re.compile(r"\d{1,2}:\d{2}(:\d{2})?")
 
 
 def iso_moment(cell: str) -> str | None:
-    """A day, a day and time, or a time of day in ISO 8601; None if it is invalid or ambiguous.
+    """Text of a day, a day and time, or a time of day in ISO 8601; None if it is invalid or ambiguous.
 
     With points the day comes first. With slashes it is read only if the order of day and month is unambiguous.
 

@@ -28,11 +28,11 @@ class Correction(AppliedCorrection):
     line: int
 
     def applied(self) -> AppliedCorrection:
-        """The correction for the records of the campaign."""
+        """Correction without its line, for the records of the campaign."""
         return AppliedCorrection(*(getattr(self, field.name) for field in fields(AppliedCorrection)))
 
     def mismatch(self, column: str, value: str, allowed: str) -> Problem:
-        """Error of a correction that does not match the raw file."""
+        """Error for a column of corrections.csv whose value in this correction does not match the raw file."""
         return error(
             "correction_mismatch",
             CORRECTIONS.file,
@@ -52,7 +52,7 @@ RowCorrections: TypeAlias = "Mapping[int, Sequence[Correction]]"
 
 
 def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict[int, list[Correction]]]:
-    """Group the rows of corrections.csv by corrected file and line."""
+    """Corrections in the rows of corrections.csv, by corrected file and line; errors are added to the problems."""
     files = [form.file for form in TABLES]
     sorted_by_file: dict[str, dict[int, list[Correction]]] = {}
     lines, rows = table.row.tolist(), table.numbers["row"].tolist()
@@ -73,7 +73,7 @@ def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict
 
 
 class Corrector:
-    """Applies the corrections of one file to its records.
+    """Applies the corrections of one file to its rows while they are read.
 
     header: header of the file, with the column ``status`` if a correction cancels an experiment.
     mark: decimal mark of the file.

@@ -20,33 +20,33 @@ from .table_forms import BRANCH
 
 @dataclass(frozen=True, slots=True)
 class Blocks:
-    """m blocks of consecutive rows with the same key; block i has the rows ``first[i]:first[i + 1]``."""
+    """m blocks of consecutive rows of a table, one per experiment; block i has the rows ``first[i]:first[i + 1]``."""
 
     first: IntArray
 
     @classmethod
     def of_runs(cls, key: NameColumn) -> Blocks:
-        """Blocks of rows with the same key."""
+        """Blocks of consecutive rows that have the same name in the column `key`."""
         changes = np.flatnonzero(key.code[1:] != key.code[:-1]) + 1
         return cls(np.concatenate(([0], changes, [len(key.code)])).astype(np.int64))
 
     @property
     def start(self) -> IntArray:
-        """First row of each block."""
+        """Index of the first row of each block (m,)."""
         return self.first[:-1]
 
     @property
     def of_row(self) -> IntArray:
-        """Block of each row."""
+        """Index of the block of each row (n,)."""
         return np.repeat(np.arange(len(self.start), dtype=np.int64), np.diff(self.first))
 
     def first_of(self, chosen: BoolArray) -> IntArray:
-        """Offsets (m + 1,) of the blocks if only the chosen rows are counted."""
+        """Offsets (m + 1,) of the blocks in an array of only the chosen rows."""
         count = np.add.reduceat(chosen.astype(np.int64), self.start)
         return np.concatenate(([0], np.cumsum(count))).astype(np.int64)
 
     def first_chosen(self, mask: BoolArray) -> IntArray:
-        """First row of each block at which ``mask`` is True, otherwise the first row of the block."""
+        """Index of the first row of each block at which ``mask`` is True; without one, that of its first row."""
         chosen = self.start.copy()
         rows = np.flatnonzero(mask)[::-1]
         chosen[self.of_row[rows]] = rows  # of repeated indices the last assignment stays
@@ -61,7 +61,7 @@ class Blocks:
         return np.where(low == high, low, total / np.maximum(count, 1) + np.where(count > 0, 0.0, np.nan))
 
     def texts(self, column: NameColumn) -> tuple[str, ...]:
-        """Distinct texts of each block that are not blank, joined by semicolons."""
+        """For each block, the distinct texts of a column that are not blank, joined by semicolons."""
         collected: dict[int, dict[str, None]] = {}
         block = self.of_row
         for row in np.flatnonzero(~column.is_blank).tolist():
@@ -177,7 +177,7 @@ def penetration_tests(table: Table) -> PenetrationTests:
 
 
 def _experiments(table: Table, blocks: Blocks, rows: IntArray) -> dict[str, Any]:
-    """Fields that penetration and shear experiments share; names and angles are those of one row of each."""
+    """Fields of records that penetration and shear experiments share, by name; `rows`: row of names and angles."""
     spot = table.names["spot"]
     return {
         **{name: _cells_at(table.names[name], rows) for name in table.form.names},
@@ -227,7 +227,7 @@ def drop_cone_tests(table: Table) -> DropConeTests:
 
 
 def single_rows(table: Table) -> dict[str, Any]:
-    """Fields that all records have in which each row of the file counts alone: names, cancellations, lines, texts."""
+    """Fields of records of single rows by name: names, reasons of cancellations, lines of the file, other texts."""
     names = {name: table.names[name].cells() for name in table.form.names}
     return {**names, "cancelled": _cancellation_reasons(table), "row": table.row, "further": table.further}
 
@@ -237,7 +237,7 @@ def _cells_at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[st
 
 
 def _cancellation_reasons(table: Table) -> tuple[str, ...]:
-    """Reasons by row, "" if it counts: a status in any row of a sample or test cancels all its rows at that site."""
+    """Reason for cancelling each row, or "": a status in one row of a test cancels all its rows at that site."""
     status = table.names["status"].cells()
     together = list(zip(table.names["site"].cells(), table.names[table.form.key].cells(), strict=True))
     reasons: dict[tuple[str, str], dict[str, None]] = {}

@@ -32,9 +32,9 @@ NO_UNIT: Final = {"", "-", "–", "#", "nr", "nr.", "no", "no."}
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """Headings of a table.
+    """Header of a table.
 
-    columns: names of the columns, stripped; ``""`` for an unnamed one.
+    columns: headings of the columns, stripped; ``""`` for an unnamed one.
     row: line of the file.
     units: units in a separate row below the names, ``""`` without a unit; empty without such a row.
     """
@@ -45,14 +45,14 @@ class Header:
 
     @property
     def position(self) -> dict[str, int]:
-        """Number of each named column; the first of equal names."""
+        """Index of each named column by its name; of equal names the first one."""
         backwards = reversed(range(len(self.columns)))
         places = {self.columns[index]: index for index in backwards if self.columns[index]}
         return dict(sorted(places.items(), key=lambda item: item[1]))
 
 
 def split_header(lines: list[int], rows: list[list[str]]) -> Header:
-    """Remove the header from the first records, with title rows above it and a row of units below it."""
+    """Remove title rows, headings and a row of units from the first rows of a file; returns the header."""
     filled = [sum(1 for cell in cells if cell.strip()) for cells in rows[:_MOST_TITLES]]
     place = next((place for place, count in enumerate(filled) if count > 1), 0)
     columns = tuple(cell.strip().strip("\ufeff").strip() for cell in rows[place])
@@ -64,7 +64,7 @@ def split_header(lines: list[int], rows: list[list[str]]) -> Header:
 
 
 def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
-    """Units of a row that has two units or more, and else only cells such as "Nr." or "-"; () for any other row.
+    """Units by column if a row is one of units (two or more, and else only "Nr.", "-" and the like), otherwise ().
 
     >>> _units_of(["Nr.", "°", "kg", "[mm]", ""]), _units_of(["1", "30", "kg", "mm", ""])
     (('', '°', 'kg', 'mm', ''), ())
@@ -114,7 +114,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
 
 
 def _all_missing(form: TableForm, header: Header) -> Problem:
-    """Error of a table with foreign headings: proposes the lines for campaign.toml."""
+    """Error for a table without any required column; it proposes a mapping of the headings in campaign.toml."""
     meant = columns_by_synonym(form, header.columns)
     left = [name for name in form.required if name not in meant.values()]
     pairs = ", ".join(
@@ -147,7 +147,7 @@ def column_units(
 ) -> tuple[dict[str, UnitConversion], dict[str, str]]:
     """Resolve the units of a table; a column's own name such as load_N states its unit.
 
-    form, header, headings: the table, its headings in the file, and the mapping of headings in campaign.toml.
+    form, header, headings: form of the table, its header in the file, and the mapping of headings in campaign.toml.
     problems: list to which problems are added: a wrong unit, two units for one heading, a note on each conversion.
     Returns the conversion of each column whose unit is stated, and the headings without a unit by their columns.
     """

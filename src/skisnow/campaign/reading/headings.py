@@ -22,9 +22,9 @@ FORMS: Final = {form.name: form for form in (*TABLES, CORRECTIONS)}
 
 @dataclass(frozen=True, slots=True)
 class Headings:
-    """Columns and units by the file of a table, "" for all tables, and by plain heading; those of one table override.
+    """Mapping of headings in campaign.toml: columns and units of the numbers, by file and `plain_heading`.
 
-    columns, units: names of the columns, and units of the numbers below the headings.
+    The file "" is for all tables; entries of a table's file override them.
     """
 
     columns: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class Headings:
         return _entry(self.units, form, heading)
 
     def without_heading(self, headings: Mapping[str, Sequence[str]]) -> Iterator[str]:
-        """Paths of stated units whose heading is in no table; `headings` are those of each table by file."""
+        """Paths in campaign.toml of units whose heading is in no table; `headings`: those of the tables by file."""
         there = {file: {plain_heading(heading) for heading in names} for file, names in headings.items()}
         there[""] = set().union(*there.values())
         for file, units in self.units.items():
@@ -54,7 +54,7 @@ def _entry(entries: Mapping[str, Mapping[str, str]], form: TableForm, heading: s
 
 
 def plain_heading(heading: str) -> str:
-    r"""A heading without differences in case, white space and Unicode form.
+    r"""Heading with normalised case, white space and Unicode form, for comparisons.
 
     >>> plain_heading(" Kantwinkel\n[°] ")
     'kantwinkel [°]'
@@ -63,7 +63,7 @@ def plain_heading(heading: str) -> str:
 
 
 def parse_headings(top: TomlValues) -> Headings:
-    """Read ``[columns]`` and ``[units]``; each for all tables, or for one under ``[columns.penetration]``."""
+    """Read ``[columns]`` and ``[units]`` of campaign.toml, for all tables or for one as ``[columns.penetration]``."""
     return Headings(_by_table(top.table(KEY), _name), _by_table(top.table(UNITS_KEY), _unit))
 
 
@@ -88,7 +88,7 @@ def _by_table(section: TomlValues, entry: Entry) -> dict[str, dict[str, str]]:
 
 
 def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> str:
-    """Unit of a heading, such as ``"Last" = "kg"``; empty, with an error, if it is unknown."""
+    """Unit that an entry such as ``"Last" = "kg"`` states for a heading; "", with an error, if it is unknown."""
     value = section.values[heading]
     unit = known_unit(value) if isinstance(value, str) else ""
     if not unit:
@@ -98,7 +98,7 @@ def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> str:
 
 
 def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> str:
-    """Column of a heading; empty, with an error, if it is unknown."""
+    """Column that an entry of ``[columns]`` states for a heading; "", with an error, if it is unknown."""
     value = section.values[heading]
     if isinstance(value, str) and value.strip() in columns:
         return value.strip()
@@ -151,7 +151,7 @@ _LAST_WORD: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class UnitConversion:
-    """Conversion of numbers from the unit that a heading names to the unit of their column."""
+    """Conversion of numbers from the unit that a heading names to that of their column: value × factor + shift."""
 
     name: str = field(compare=False)
     factor: float = 1.0
@@ -202,7 +202,7 @@ def unit_of_column(name: str) -> str:
 
 
 def named_unit(heading: str) -> str:
-    """Known unit that a heading names, in small letters; empty if it names none.
+    """Known unit in a heading, in small letters; "" without one.
 
     >>> [named_unit(each) for each in ("Last [kg]", "Tiefe / mm", "Arm in cm", "load_kg", "Tiefe (roh)", "Moment M")]
     ['kg', 'mm', 'cm', 'kg', '', '']
@@ -217,23 +217,23 @@ def named_unit(heading: str) -> str:
 
 
 def known_unit(text: str) -> str:
-    """A unit in the form of this module's tables, or "" if it is unknown."""
+    """Unit in small letters, as in the tables of this module; "" for a text that is not a known unit."""
     unit = " ".join(text.split()).casefold()
     return unit if unit in _KNOWN else ""
 
 
 def conversion(unit: str, column: str) -> UnitConversion | None:
-    """Conversion from a known unit to that of a column; None if the column has a quantity of another kind."""
+    """Conversion from a known unit to that of a column; None if the unit is one of another quantity."""
     return _CONVERSIONS.get((unit_of_column(column), unit))
 
 
 def folded_unit(column: str) -> str:
-    """Unit of a column in small letters, as the tables of this module list units."""
+    """Unit at the end of a column's name, in small letters and as headings write it, such as "kg/m³"."""
     return _OWN[unit_of_column(column)][0].casefold()
 
 
 def units_for(column: str) -> str:
-    """Names of the units that numbers of a column may have, the column's first.
+    """List of the units, as text, in which numbers of a column can be stated, the column's own first.
 
     >>> units_for("load_N")
     'N, kg, g, kN, daN'
@@ -243,7 +243,7 @@ def units_for(column: str) -> str:
 
 
 def every_unit() -> str:
-    """Names of the units that numbers of any column may have."""
+    """List, as text, of all units that skisnow converts."""
     return ", ".join(f"{names[0]}, {', '.join(other[0] for other in _OTHER[unit])}" for unit, names in _OWN.items())
 
 
@@ -292,7 +292,7 @@ _UNIT_RANK: Final = 0.25
 
 
 def columns_by_synonym(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
-    """Columns by the headings with one of their synonyms, each column once, in the order of the headings."""
+    """Most likely column of each heading that contains one of its synonyms, by heading; each column occurs once."""
     ranked = sorted(
         (-rank, place, column)
         for place, heading in enumerate(headings)
@@ -321,7 +321,7 @@ def stated_column(form: TableForm, heading: str) -> str:
 
 
 def heading_words(heading: str) -> str:
-    """Words of a heading without its unit, in the form of `letters`."""
+    """Words of a heading without its unit, normalised by `letters`."""
     match = FORM.fullmatch(" ".join(heading.split()))
     words = letters(match["words"] if match else heading)
     unit = letters(named_unit(heading))
@@ -329,7 +329,7 @@ def heading_words(heading: str) -> str:
 
 
 def _rank(heading: str, column: str) -> float:
-    """Rank of a column for a heading: 0 without a synonym, or if the heading names a unit of another quantity."""
+    """Likelihood, 0 to 1.25, that a heading means a column, by its synonyms and unit; 0 if it cannot."""
     unit = named_unit(heading) if unit_of_column(column) else ""
     if unit and conversion(unit, column) is None:
         return 0.0

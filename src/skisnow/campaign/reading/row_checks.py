@@ -24,7 +24,7 @@ from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRAT
 
 
 def check_rows(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    """Problems between the rows of a table, and between the table and campaign.toml."""
+    """Problems that follow from several rows of a table, or from the table and campaign.toml together."""
     yield from _check_likely_units(table)
     yield from _check_missing_units(table, described)
     if table.form in (DENSITY, DROP_CONE):
@@ -76,7 +76,7 @@ SMALLEST_LIKELY_DEG: Final = 1.6
 
 
 def _check_angles(table: Table, blocks: Blocks, described: CampaignFile | None) -> Iterator[Problem]:
-    """Warnings of a file in radians and of penetration beyond the measured angles; errors for tilted flat tools."""
+    """Warnings of angles that look like radians or exceed the measured ones; errors for tilted tools without edge."""
     angle = table.numbers[COLUMN]
     tilted = angle[angle > 0]
     if len(tilted) and float(tilted.max()) < SMALLEST_LIKELY_DEG:
@@ -158,7 +158,10 @@ FAR: Final = 500.0
 
 @dataclass(frozen=True, slots=True)
 class LikelyColumn:
-    """Likely range of the median of a column's numbers above 0, and True if single rows are checked, too."""
+    """Likely range of the median of a column's numbers above 0, and the units that other medians look like.
+
+    each_row: True if single rows are also checked.
+    """
 
     low: float
     high: float
@@ -201,7 +204,7 @@ def _check_likely_units(table: Table) -> Iterator[Problem]:
 
 
 def _unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
-    """Median of the numbers of a column of `LIKELY` above 0 and the unit they look like; None if it is likely."""
+    """Median of a column's numbers above 0, and the unit they look like; None if it is in the range of `LIKELY`."""
     middle, likely = _median(table, name), LIKELY[name]
     if middle is None or likely.low <= middle <= likely.high:
         return None
@@ -299,7 +302,7 @@ def _loads_and_depths_of_tools(table: Table, described: CampaignFile | None) -> 
 
 
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
-    """Row of each experiment's largest load, from the given rows that do not unload; the first row if all unload."""
+    """Rows with the largest load of each experiment among the given rows; only the first row if all are unloading."""
     load, unloading, key = table.numbers["load_N"], is_unloading(table.names[BRANCH]), table.names[table.form.key].code
     largest: dict[int, int] = {}
     for row in rows:

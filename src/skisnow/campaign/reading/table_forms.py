@@ -11,7 +11,7 @@ from ...parameters import Quantity
 
 
 def allowed_words(column: Quantity) -> Message:
-    """Allowed numbers in words.
+    """Allowed numbers of a column in words.
 
     >>> print(allowed_words(Quantity("edge_angle_deg", "edge angle", lowest=0, highest=90, below=True)))
     a number from 0 to below 90
@@ -25,10 +25,10 @@ def allowed_words(column: Quantity) -> Message:
 
 @dataclass(frozen=True, slots=True)
 class TableForm:
-    """The columns of one file.
+    """Form of one table of a campaign: its required and known columns.
 
     file: name of the file in the campaign's folder.
-    key: the column that names an experiment, sample or test.
+    key: column with the name of an experiment, sample or test.
     names: required text columns that must not be blank, in order; the key is one of them.
     numbers: columns of numbers, required and optional.
     texts: required text columns that may be blank.
@@ -53,12 +53,12 @@ class TableForm:
 
     @property
     def required(self) -> tuple[str, ...]:
-        """Required columns."""
+        """Names of the required columns."""
         return self.names + tuple(column.name for column in self.numbers if column.needed) + self.texts
 
     @property
     def known(self) -> tuple[str, ...]:
-        """All known columns."""
+        """Names of all columns that skisnow knows."""
         numbers = tuple(column.name for column in self.numbers)
         return tuple(dict.fromkeys(self.names + numbers + self.texts + self.optional + self.further))
 

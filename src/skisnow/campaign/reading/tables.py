@@ -43,8 +43,8 @@ class Cells:
 def read_table(form: TableForm, files: RawFiles, progress: Callable[[str], None] | None = None) -> Table | None:
     """Read one table, with its corrections applied, and check each cell.
 
-    files: its headings and corrections are used; it takes every problem.
-    progress: called with the number of rows read so far.
+    files: files of the campaign; its headings and corrections are used, and problems are added to it.
+    progress: called with a text on the number of rows read so far.
     Returns the table, or None if no row can be read. After an error its columns can have gaps.
     """
     text = files.csv_text(form)
@@ -83,7 +83,7 @@ def read_table(form: TableForm, files: RawFiles, progress: Callable[[str], None]
 
 
 def table_of_cells(form: TableForm, cells: Cells, files: RawFiles) -> Table | None:
-    """Check each cell of a table in memory, whose corrections are applied; after an error columns can have gaps."""
+    """Convert and check a table in memory with applied corrections; None without rows. Errors leave gaps in columns."""
     reading = TableReading(form, files, Header(cells.columns, 1))
     reading.take(list(cells.lines), list(cells.rows))
     return reading.finish(readable=True)
@@ -95,9 +95,9 @@ def _empty_error(form: TableForm, what: str) -> Problem:
 
 
 class TableReading:
-    """Collects the records of a table in chunks.
+    """Collects the rows of a table in chunks and converts them to a `Table`.
 
-    header, corrector: header with the names of the columns, and corrections.
+    header, corrector: header with the names of the columns, and the object that applies corrections.
     conversions: conversion of each column whose unit is stated.
     """
 
@@ -137,7 +137,7 @@ class TableReading:
         return sum(map(len, self._row))
 
     def take(self, lines: list[int], rows: list[list[str]]) -> None:
-        """Add some records."""
+        """Correct, check and store some rows with their lines of the file."""
         self._met_rows = True
         lines, rows = self._without_surplus(lines, rows)
         self.corrector.apply(lines, rows)
@@ -200,7 +200,7 @@ class TableReading:
 
 
 def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
-    """Decimal mark of a table: that of its first numbers with a fraction."""
+    """Decimal mark of a CSV table, point or comma: that of its first numbers with a fraction."""
     number_columns = {column.name for column in form.numbers}
     positions = [index for index, name in enumerate(header.columns) if name in number_columns]
 

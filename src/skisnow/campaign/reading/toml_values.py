@@ -25,12 +25,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class TomlValues:
-    """One table of a TOML file.
+    """One table of a parsed TOML file, whose values are checked as they are read.
 
-    file: the file's name.
-    values: the parsed table.
-    path: Path of the table, ``""`` at the top.
-    problems: takes the problems.
+    file: name of the file.
+    values: parsed table.
+    path: path of the table in the file, ``""`` at the top.
+    problems: list to which problems are added.
     """
 
     file: str
@@ -45,7 +45,7 @@ class TomlValues:
     def refuse(
         self, key: str, allowed: str, action: str = "", *, code: str = "bad_toml", value: object = _MISSING
     ) -> None:
-        """Report an error of a key (default: with its value, and the advice to correct the key)."""
+        """Add an error for a key (default: with its value, and the advice to correct the key) to the problems."""
         action = action or Message("Correct {key}.", key=key)
         shown = self.values.get(key) if value is _MISSING else value
         text = None if shown is None else shown_value(shown, 200, str)
@@ -54,13 +54,13 @@ class TomlValues:
         )
 
     def refuse_unknown(self, key: str, value: object, words: Iterable[str], allowed: str, action: str) -> None:
-        """Report an unknown word, with the known one that is most like it."""
+        """Add an error for an unknown word at a key, with the most similar of the known words."""
         near = difflib.get_close_matches(shown_value(value, 200, str).lower(), list(words), n=1)
         meant = [Message("Did you mean {similar}?", similar=near[0])] if near else []
         self.refuse(key, allowed, joined([*meant, action]), value=value)
 
     def text(self, key: str, *, blank_allowed: bool = False) -> str | None:
-        """Stripped text; None if it is missing, invalid or blank."""
+        """Stripped text of a key; None if it is missing, invalid (an error is added) or blank."""
         value = self.values.get(key)
         if value is None:
             return None
@@ -71,7 +71,7 @@ class TomlValues:
         return value.strip() or None
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """One text or a list of texts; empty if missing or invalid."""
+        """Texts of a key that has one text or a list of texts; () if missing or invalid."""
         value = self.values.get(key, [])
         items = [value] if isinstance(value, str) else value
         if not isinstance(items, list) or not all(isinstance(item, str) for item in items):
@@ -80,11 +80,11 @@ class TomlValues:
         return tuple(item.strip() for item in items if item.strip())
 
     def number(self, quantity: Quantity) -> float | None:
-        """Number in the unit of its key; None if missing or invalid."""
+        """Number of a quantity's key in the unit of the key; None if missing or invalid."""
         return self._checked(self.values[quantity.name], quantity) if quantity.name in self.values else None
 
     def numbers(self, quantity: Quantity) -> tuple[float, ...]:
-        """List of the valid numbers."""
+        """Valid numbers of the list at a quantity's key, in the unit of the key."""
         key = quantity.name
         values = self.values.get(key, [])
         if not isinstance(values, list):
@@ -94,7 +94,7 @@ class TomlValues:
         return tuple(value for value in checked if value is not None)
 
     def _checked(self, value: object, quantity: Quantity) -> float | None:
-        """The number in the key's unit; None and a problem if it is not a number or out of range."""
+        """Value as a number in the key's unit; None, with an error, if it is not a number or out of range."""
         allowed = Message("a finite number {allowed}", allowed=quantity.allowed)
         if isinstance(value, bool) or not isinstance(value, int | float):
             action = Message("Write a number with a decimal point, without quotes.")
@@ -109,7 +109,7 @@ class TomlValues:
         return float(value)
 
     def table(self, key: str) -> TomlValues:
-        """A table below this one; empty if missing or invalid."""
+        """Table at a key below this one; an empty table if missing or invalid."""
         value = self.values.get(key, {})
         if not isinstance(value, dict):
             self.refuse(key, Message("a table, begun by the line [{key}] above its keys", key=key))
@@ -117,7 +117,7 @@ class TomlValues:
         return TomlValues(self.file, value, self.path_of(key), self.problems)
 
     def tables(self, key: str) -> list[TomlValues]:
-        """Tables of a list; empty if missing or invalid."""
+        """Tables in the list at a key, such as ``[[tool]]``; [] if missing or invalid."""
         values = self.values.get(key, [])
         if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
             self.refuse(key, Message("tables, each begun by the line [[{key}]] above its keys", key=key))
@@ -126,7 +126,7 @@ class TomlValues:
         return [TomlValues(self.file, value, path, self.problems) for value, path in zip(values, paths, strict=True)]
 
     def declared(self, owner: type[T]) -> T:
-        """Dataclass with the quantities of this table; missing and invalid ones have their defaults."""
+        """Build a dataclass from the values of this table; missing and invalid ones have their defaults."""
         quantities = {quantity.name: quantity for quantity in own_quantities(owner)}
         self.refuse_misspelt(quantities)
         values: dict[str, object] = {}

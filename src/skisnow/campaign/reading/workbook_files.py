@@ -28,10 +28,10 @@ _LIKELY: Final = 0.6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UnfoldedFiles(CampaignFiles):
-    """The files of a campaign, including sheets of workbooks.
+    """Files of a campaign, with the sheets of its workbooks as CSV and TOML files.
 
-    files: the other files.
-    of_sheets: contents of the sheets, by the names of a campaign's files.
+    files: files of the campaign, including the workbooks.
+    of_sheets: bytes of the files that the sheets replace, such as penetration.csv, by name.
     places: name of workbook and sheet for messages, by the name of the file.
     hashes: SHA-256 of each workbook that was read.
     unread: rows of the sheets with other names, by name of workbook and sheet.
@@ -147,7 +147,7 @@ def _kind(title: str) -> str:
 
 
 def _csv(rows: Iterable[list[str]]) -> bytes:
-    """CSV with one line for each row, so that rows keep their numbers, and all cells in quotes."""
+    """CSV of rows, all cells in quotes; each row, also a blank one, has one line, so that row numbers stay."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n", quoting=csv.QUOTE_ALL)
     for cells in rows:
@@ -193,7 +193,7 @@ def description_text(sheets: Mapping[str, Rows]) -> str:
 
 
 def _records(rows: Rows) -> Iterator[Mapping[str, str]]:
-    """Rows that are not blank, by the names in the first row."""
+    """Yield each row that is not blank as a mapping from the names in the first such row to its cells."""
     filled = (cells for cells in rows if any(cells))
     header: Sequence[str] = next(filled, [])
     for cells in filled:
@@ -208,7 +208,7 @@ def _toml_line(key: str, cell: str) -> str:
 
 
 def _value(cell: str) -> str:
-    """TOML of a cell: a number with a decimal point or comma, or else a text.
+    """Text of a cell as a value of TOML: a number with a decimal point or comma, or else a text.
 
     >>> _value("0,01"), _value("12"), _value("Müller")
     ('0.01', '12.0', '"Müller"')

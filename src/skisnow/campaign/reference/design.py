@@ -31,7 +31,7 @@ from ...snow.published import moessner_2013
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """A site: number of tests, mean ρ (kg/m³) and H_p (m); median H_V (N/m³) and paired tests of a penetration site.
+    """A site: number of tests, mean ρ (kg/m³) and H_p (m), median H_V (N/m³), and number of spots with paired tests.
 
     The tests are penetration series, or shear tests at 90° at a site without penetration tests.
     """

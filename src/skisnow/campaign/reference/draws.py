@@ -26,9 +26,9 @@ _REDRAWS = 1000
 
 
 class DrawnPenetration(NamedTuple):
-    """Readings, and per series the seating offset (m), κ, the tool's depth under the largest load (m) and k_u/H_V.
+    """Drawn penetration tests, and per series their true seating offset (m), κ, largest depth (m) and k_u/H_V.
 
-    The last is NaN where no disc was taken off. ``true_depth`` (m), one per reading, is that of the law.
+    k_u/H_V is NaN for a series without unloading. ``true_depth`` (m), one per reading, is that of the law.
     """
 
     tests: PenetrationTests
@@ -40,7 +40,7 @@ class DrawnPenetration(NamedTuple):
 
 
 def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> FloatArray:
-    """Draw H_V (N/m³) of each series."""
+    """Draw H_V (N/m³) of each penetration series."""
     sites = design.PENETRATION_SITES
     medians = np.repeat([site.snow_hardness for site in sites], [site.tests for site in sites])
     low, high = np.log(design.HARDNESS_RANGE).tolist()
@@ -48,7 +48,7 @@ def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> Floa
 
 
 def edge_angle(generator: np.random.Generator, snow_hardness: FloatArray) -> FloatArray:
-    """Planned angle (rad) of each series, or another random angle if the flat tool stays too shallow."""
+    """Edge angle (rad) of each series: the planned one, or a random one if the flat tool would stay too shallow."""
     planned = (
         np.array(
             [
@@ -67,7 +67,7 @@ def edge_angle(generator: np.random.Generator, snow_hardness: FloatArray) -> Flo
 def penetration(
     generator: np.random.Generator, snow_hardness: FloatArray, edge_angle: FloatArray, noise: ReferenceNoise
 ) -> DrawnPenetration:
-    """Draw the readings of every series."""
+    """Draw the readings of all penetration series for their true H_V (N/m³) and edge angles (rad)."""
     shape = (snow_hardness.size, len(design.LOADS))
     nominal = np.array(design.LOADS)
     spread = np.exp(noise.layering_sd / 2.0 * generator.standard_normal(shape[0]))
@@ -107,9 +107,9 @@ def penetration(
 
 
 def add_unloading(generator: np.random.Generator, drawn: DrawnPenetration, noise: ReferenceNoise) -> DrawnPenetration:
-    """Add the readings of the unloading, at the sites with unloading.
+    """Add readings during unloading to the series of the sites with unloading.
 
-    The tool starts at its depth e_m under the largest load, and feels at e_m - d what it felt at the depth e_m - κ d.
+    The tool starts at its depth e_m under the largest load; at e_m - d it carries what it carried at e_m - κ d before.
     """
     tests, shape = drawn.tests, (len(drawn.tests), len(design.LOADS) - 1)
     ratio = design.UNLOADING_RATIO * np.exp(noise.unloading_log_sd * generator.standard_normal(shape[0]))
@@ -172,7 +172,7 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
 
 
 def add_creep(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
-    """Add depths read again under the same load, at the site with creeping snow."""
+    """Copy of the tests with depths that were read again under the same load, at the site with creeping snow."""
     growth = noise.creep_mean * generator.standard_exponential(len(tests.load))
     there = np.array(tests.site, dtype=object)[tests.series_of_reading] == design.CREEPING_SITE
     after = _round_to_gauge(tests.penetration_depth * (1.0 + growth), noise)
@@ -241,7 +241,7 @@ def _normal_within(
 
 
 def _gauge_reading(depth: FloatArray, seating_offset: FloatArray, noise: ReferenceNoise) -> FloatArray:
-    """Reading of each depth (m, 7), with the offset of its series; a gauge does not read below its zero."""
+    """Gauge reading (m) of each depth (m), shape (series, 7), with the offset of its series, 0 or more, rounded."""
     return _round_to_gauge(np.maximum(depth + seating_offset[:, np.newaxis], 0.0), noise)
 
 
