@@ -97,7 +97,7 @@ def _draw_surface(axes: Axes, answers: list[Json]) -> None:
 
 
 def _draw_plan(axes: Axes, answers: list[Json]) -> None:
-    """Draw the edges from above with the arcs of both circles; the scales of the axes differ."""
+    """Draw each ski's edge from above with the arcs of two definitions of the radius; the scales of the axes differ."""
     for place, answer in enumerate(answers):
         if answer["edge_line_mm"] is None:
             continue

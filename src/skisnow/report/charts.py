@@ -39,7 +39,7 @@ def law_of_series(
     snow_hardness: FloatArray | float,
     penetration_depth: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Depth (mm) and load F = H_V V (N) of a tool at edge angles (rad) and depths (m) in snow of H_V (N/m³)."""
+    """Depths in mm, and loads F = H_V V (N), of a tool at edge angles (rad) and depths (m) in snow of H_V (N/m³)."""
     volume = tool.displaced_volume(penetration_depth, edge_angle)
     return penetration_depth / MM, snow_hardness * volume
 
@@ -66,7 +66,7 @@ def series_curves(campaign: Campaign, snow_hardness: FloatArray) -> tuple[Series
 def _laws(
     campaign: Campaign, tests: PenetrationTests, snow_hardness: FloatArray
 ) -> dict[int, tuple[FloatArray, FloatArray]]:
-    """Points of the law by the index of its series, computed for all series of one tool together."""
+    """Points of the law, depths (mm) and loads (N), by the index of each series that has H_V."""
     by_tool: dict[str, list[int]] = {}
     for index in np.flatnonzero(np.isfinite(snow_hardness)).tolist():
         by_tool.setdefault(tests.tool[index], []).append(index)

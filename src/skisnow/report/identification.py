@@ -100,7 +100,7 @@ def identify_page(result: Identification, pictures: list[Picture]) -> str:
 
 
 def _headline(result: Identification) -> Markup:
-    """The first parameter with its interval."""
+    """Sentence with the first identified parameter and its interval."""
     if not result.parameters:
         return Markup("")
     first = result.parameters[0]
@@ -213,7 +213,7 @@ def correlation_table(result: Identification) -> Table:
 
 
 def _pair(interval: Interval | None) -> list[float] | None:
-    """Both ends of an interval; None if one of them is open."""
+    """Both ends of an interval as a list; None without an interval, or if an end is unknown."""
     if interval is None or interval[0] is None or interval[1] is None:
         return None
     return [interval[0], interval[1]]

@@ -32,10 +32,11 @@ _LETTERS: Final = 105  # maximum length of a title over the whole width of a fig
 
 @dataclass(frozen=True, slots=True)
 class MapLayout:
-    """Names of inputs by their place in a map.
+    """Assignment of a study's varied inputs to the parts of a map.
 
+    x: input of the horizontal axis.
     second: input of the lines of the radius map and of the ordinate of the grip map; None if nothing else varies.
-    panels: the other inputs; of a sample only names and switches.
+    panels: other inputs, one panel for each combination; of a sample only names and switches.
     sampled: True if the points are a sample instead of a grid.
     """
 
@@ -46,7 +47,7 @@ class MapLayout:
 
 
 def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
-    """Choose the edge angle for the axis and the load as second input if they vary, otherwise the next number.
+    """Layout of a study's map: edge angle on the axis and load as second input if they vary, else the next number.
 
     second_is_number: False lets a name or switch be the second input if no other number varies.
 
@@ -77,7 +78,7 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
 
 
 def drawn_table(table: StudyTable) -> StudyTable:
-    """Rows with an answer; each ski has its own name if the names are unique.
+    """Table of only the rows with an answer; the skis have their own names if these are unique.
 
     Raises ParameterError: no row has an answer.
     """
@@ -92,7 +93,7 @@ def drawn_table(table: StudyTable) -> StudyTable:
 
 
 def fixed_inputs(table: StudyTable) -> str:
-    """Caption of a map: inputs that are equal in all rows and differ from their defaults."""
+    """Caption of a map with the inputs that are equal in all rows and differ from their defaults; can be empty."""
     words = []
     for name, key in CARVE_KEYS.items():
         values = {row.get(name) for row in table.rows}
@@ -109,7 +110,7 @@ def write_caption(figure: Figure, text: str) -> None:
 
 
 def panels_of(table: StudyTable, layout: MapLayout) -> list[tuple[str, list[Json]]]:
-    """Title and rows of each panel."""
+    """Title and rows of each panel of a map: one for each combination of the values of `layout.panels`."""
     combinations = itertools.product(*(_distinct(table, name) for name in layout.panels))
     panels = []
     for values in combinations:
@@ -135,7 +136,7 @@ def wants_logarithm(name: str, values: FloatArray) -> bool:
 
 
 def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list[Json]]]:
-    """Rows of each value of an input, in rising order."""
+    """Yield each value of an input in rising order, with its rows; only None with all rows if `name` is None."""
     if name is None:
         yield None, list(rows)
         return
@@ -144,7 +145,7 @@ def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list
 
 
 def short(name: str, value: Any) -> str:
-    """One value of an input for a title or a legend.
+    """Text of one value of an input for a title or a legend.
 
     >>> short("load_N", 800.0), short("ski", "slalom"), short("twist", False)
     ('800 N', 'slalom', 'twist false')
@@ -158,12 +159,12 @@ def short(name: str, value: Any) -> str:
 
 
 def label(name: str) -> str:
-    """The axis label of an input."""
+    """Label of the axis of an input, with symbol and unit if it has them."""
     return CARVE_KEYS[name].axis_label if name in CARVE_KEYS else name
 
 
 def _prefix_and_suffix(name: str) -> tuple[str, str]:
-    """Short texts before and after a value."""
+    """Texts before and after a value of an input in titles, such as its symbol and unit."""
     key = CARVE_KEYS.get(name)
     if key is None or not (key.label or key.symbol or (key.kind == "text" and not key.choices)):
         return f"{name.replace('_', ' ')} ", ""
@@ -174,7 +175,7 @@ def _prefix_and_suffix(name: str) -> tuple[str, str]:
 
 
 def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[Axes]:
-    """Axes of each panel with shared scales; unused cells of the grid stay empty."""
+    """Add a grid of axes with shared scales to a figure, one for each title; returns them without unused cells."""
     rows = -(-len(titles) // columns)
     grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     all_axes: list[Axes] = list(grid.flat)

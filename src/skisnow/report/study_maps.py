@@ -91,7 +91,7 @@ def grip_map(table: StudyTable) -> Figure:
 
 
 def share_of_limit(row: Json) -> float:
-    """Side force over its limit; NaN without an equilibrium."""
+    """Side force divided by its limit, the shear capacity; NaN without an equilibrium."""
     force, limit = row["side_force_N"], row["side_force_limit_N"]
     if force is None or limit is None:
         return float("nan")

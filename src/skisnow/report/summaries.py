@@ -147,7 +147,7 @@ def _carve_table(answers: list[Json]) -> Iterator[str]:
 
 
 def _difference(first: str | float | None, other: str | float | None) -> str:
-    """Difference from the first ski in %; empty where it is not a quantity."""
+    """Text of the difference of a value from that of the first ski in %; "" if one is no number or nearly 0."""
     if not isinstance(first, float) or not isinstance(other, float) or abs(first) < _NOTHING:
         return ""
     percent = 100.0 * (other / first - 1.0)
@@ -155,7 +155,7 @@ def _difference(first: str | float | None, other: str | float | None) -> str:
 
 
 def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
-    """A warning for each pair of skis that two definitions of the radius rank differently; contents as above."""
+    """Yield a warning for each pair of skis, in the JSON of carve, that definitions of the radius rank differently."""
     answers = answers_of(contents)
     for (one, first), (two, second) in itertools.combinations(zip(ski_titles(answers), answers, strict=True), 2):
         radii = [(name, of(first), of(second)) for name, of in _ROWS if "radius" in name]
@@ -171,7 +171,7 @@ def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
 
 
 def identify_summary(result: Identification) -> str:
-    """Outcome, values with intervals, and effort of the search."""
+    """Text for a terminal on an identification: outcome, values with intervals, and effort of the search."""
     lines = [*facts_lines(result), result.reason, *(f"{name}: {kind}" for name, kind in result.data)]
     lines += [f"degrees of freedom {result.degrees_of_freedom}", *result.methods]
     effort = result.effort
@@ -181,7 +181,7 @@ def identify_summary(result: Identification) -> str:
 
 
 def simulate_summary(run: Run, *, title: str, verification: Mapping[str, Json] | None = None) -> str:
-    """Outcome of a run with its remedy, numbers, gates and verification."""
+    """Text for a terminal on a run: outcome with remedy, numbers, gates and verification."""
     lines = [f"{title}: {run.outcome.replace('_', ' ')}", *filter(None, [run.remedy]), ""]
     lines += named_rows(run._repr_facts().rows)
     if (result := run_gates(run)) is not None:
@@ -284,7 +284,7 @@ def run_verdict(first: Track, other: Track) -> Message | None:
 
 
 def read_compared(path: Path) -> Track:
-    """Track of a file, or of a run's folder with the angle of its slope, under the name by which the user called it."""
+    """Read the track of a file, or of a run's folder with the angle of its slope, named by the path of the user."""
     from ..track.read import read_track
 
     file = path / "track.csv" if path.is_dir() else path

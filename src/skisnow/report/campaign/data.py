@@ -33,28 +33,28 @@ def is_synthetic(name: str) -> bool:
 
 
 def numbers(rows: Sequence[Json], key: str) -> FloatArray:
-    """Values of one key, shape (n,); NaN for null."""
+    """Numbers of one key in all rows, shape (n,); NaN for null."""
     return np.array([row[key] for row in rows], dtype=float)
 
 
 def pairs(rows: Sequence[Json], key: str) -> FloatArray:
-    """Intervals of one key, shape (n, 2); NaN for null."""
+    """Intervals of one key in all rows, shape (n, 2); NaN for null."""
     missing = (np.nan, np.nan)
     return np.array([row[key] or missing for row in rows], dtype=float).reshape(-1, 2)
 
 
 def texts(rows: Sequence[Json], key: str) -> TextArray:
-    """Names of one key, shape (n,)."""
+    """Texts of one key in all rows, shape (n,)."""
     return np.array([row[key] for row in rows], dtype=object).astype(str)
 
 
 @dataclass(frozen=True, slots=True)
 class UsedTests:
-    """Columns of the n used experiments of one kind, in the units of the report.
+    """Values of the n experiments of one kind (penetration or shear) that the estimates use, in units of the report.
 
-    used: mask of the used ones among all experiments of the kind.
+    used: mask of them among all experiments of the kind.
     value, interval: H_V or S_f, and its 95 % intervals, shape (n, 2): NaN unless both ends are finite.
-    density: snow density there (kg/m³), NaN if unknown.
+    density: snow density at each experiment (kg/m³), NaN if unknown.
     """
 
     used: BoolArray
@@ -69,7 +69,7 @@ class UsedTests:
 
 @dataclass(frozen=True)
 class ReportData:
-    """An analysis with columns of its *used* experiments in the units of the report.
+    """Data of a campaign's report: an analysis, with values of its *used* experiments in the units of the report.
 
     Numbers for computations come from the analysis (SI); printed numbers come from its results.
     """
@@ -105,13 +105,13 @@ class ReportData:
 
     @cached_property
     def pressed(self) -> UsedTests:
-        """Columns of the used penetration experiments; the value is H_V (N/mm³)."""
+        """Values of the used penetration experiments; `value` is H_V (N/mm³)."""
         part = self.analysis.penetration
         return self._used_tests("penetration", N_PER_MM3, part, None if part is None else part.hardness["H_V"])
 
     @cached_property
     def sheared(self) -> UsedTests:
-        """Columns of the used shear experiments; the value is S_f (N/mm²)."""
+        """Values of the used shear experiments; `value` is S_f (N/mm²)."""
         part = self.analysis.shear
         return self._used_tests("shear", N_PER_MM2, part, None if part is None else part.stress)
 
@@ -151,7 +151,7 @@ class ReportData:
 
     @property
     def counts(self) -> str:
-        """Experiments, samples, recordings and sites, without the kinds that the campaign lacks; current language."""
+        """Text, in the current language, with the numbers of experiments, samples, recordings and sites."""
         campaign, pressed, sheared = self.campaign, len(self.penetration), len(self.shear)
         tables = (campaign.density, campaign.drop_cone, campaign.snow_micro_pen)
         samples, cones, recordings = (0 if table is None else len(table.site) for table in tables)
@@ -174,7 +174,7 @@ class ReportData:
         return ", ".join(words for count, words in counts if count)
 
     def regression(self, response: str, predictor: str) -> Json | None:
-        """Result of one regression over all sites, None if it has no data."""
+        """Result of the regression of `response` on `predictor` over all sites; None if it has no data."""
         names = (response, predictor, "all")
         rows = [row for row in self.results["regressions"] if (row["response"], row["terms"][1], row["group"]) == names]
         return rows[0] if rows and rows[0]["b"] is not None else None

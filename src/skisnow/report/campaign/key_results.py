@@ -20,7 +20,7 @@ LISTED: Final = 12
 
 
 def key_results(data: ReportData) -> list[Markup]:
-    """One sentence for each available result."""
+    """Key results of a campaign: one sentence in HTML for each available result."""
     sentences: list[Markup | None] = []
     if data.penetration:
         n = counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments")
@@ -36,7 +36,7 @@ def key_results(data: ReportData) -> list[Markup]:
 
 
 def headline(data: ReportData) -> Markup:
-    """Mean H_V with its interval, or S_f in a campaign without H_V; empty without either, and with several sites."""
+    """Sentence with mean H_V, or S_f without H_V, and its interval; empty without either, or with several sites."""
     for key, sentence in (
         ("H_V_N_per_mm3", template("Snow hardness H_V {value}, {ends}, over {sites}.")),
         ("S_f_N_per_mm2", template("Failure shear stress S_f {value}, {ends}, over {sites}.")),
@@ -55,13 +55,13 @@ def headline(data: ReportData) -> Markup:
 
 
 def own_value(data: ReportData, quantity: str) -> Json | None:
-    """Mean, interval and range of a quantity in this campaign, None without a value."""
+    """Entry of the results with mean, interval and range of a quantity in this campaign; None without a value."""
     rows = (row for row in data.results["comparisons"] if row["quantity"] == quantity and row["own"] is not None)
     return next(rows, None)
 
 
 def _unloading_sentence(data: ReportData) -> Markup | None:
-    """Unloading ratio over all sites."""
+    """Sentence with the unloading ratio over all sites; None without unloaded series."""
     rows = data.results["penetration"]["unloading"]
     if not rows:
         return None
@@ -94,7 +94,7 @@ def _displacement_sentence(data: ReportData) -> Markup | None:
 
 
 def _sentence_by_relation(data: ReportData) -> Markup | None:
-    """Density, hardness and S_f of each site by published relations, in a campaign without plate tests."""
+    """Sentence with density, hardness and S_f of each site by published relations; None with plate tests."""
     rows = data.results.get("published_relations")
     if not rows:
         return None
@@ -103,13 +103,13 @@ def _sentence_by_relation(data: ReportData) -> Markup | None:
         "By published relations, not by plate tests: hardness {hardness}; shear strength S_f {stresses}. Density: "
         "{densities}. No relation gives H_V.",
         hardness=Markup("; ").join(map(_hardness_by_relation, rows)),
-        densities=_of_sites(rows, "snow_density_kg_per_m3", "kg/m³"),
-        stresses=_of_sites(rows, "S_f_N_per_mm2", "N/mm²") or outside,
+        densities=_values_at_sites(rows, "snow_density_kg_per_m3", "kg/m³"),
+        stresses=_values_at_sites(rows, "S_f_N_per_mm2", "N/mm²") or outside,
     )
 
 
 def _hardness_by_relation(row: Json) -> Markup:
-    """Penetration resistance where it was recorded, and hand hardness with the name of its relation."""
+    """Part of a sentence: a site's penetration resistance if recorded, hand hardness, and name of its relation."""
     resistance, index = row["penetration_resistance_kPa"], row["hand_hardness_index"]
     if resistance is None and index is None:
         sentence = template("{site} outside of its range ({relation})")
@@ -131,13 +131,13 @@ def _hardness_by_relation(row: Json) -> Markup:
     )
 
 
-def _of_sites(rows: list[Json], key: str, unit: str) -> Markup:
+def _values_at_sites(rows: list[Json], key: str, unit: str) -> Markup:
     values = [Markup("{} {} {}").format(row["site"], _strong(row[key]), unit) for row in rows if row[key] is not None]
     return Markup("; ").join(values)
 
 
 def _mean_sentence(data: ReportData, tests: UsedTests, key: str, experiments: str, *, name: str) -> Markup:
-    """Mean of H_V or S_f: at the only site, at each of few sites, or at the softest and the hardest of many."""
+    """Sentence with mean H_V or S_f: at the only site, at each of few sites, or at the softest and hardest of many."""
     row, (symbol, unit) = own_value(data, key), QUANTITY[key]
     if row is None:
         return prose("None of the {n} can be used, so there is no {symbol}.", n=experiments, symbol=html(symbol))

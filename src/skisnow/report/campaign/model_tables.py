@@ -45,7 +45,7 @@ def model_name(model_id: str) -> str:
 
 
 def models_table(data: ReportData) -> Table:
-    """The nine candidate models next to the rmse that the paper prints."""
+    """Table of the nine candidate models with their rmse, next to that of the paper."""
     penetration = data.results["penetration"]
     selected_id = penetration["selected"]["id"] if penetration["selected"] else None
     columns = (
@@ -92,7 +92,7 @@ def models_table(data: ReportData) -> Table:
 
 
 def _rows_in_html(data: ReportData) -> int:
-    """0 without a selected model: the rows are then only in the table's file."""
+    """Maximum number of rows of a model table in HTML: 0 without a selected model, so that only its file has them."""
     return ROWS_IN_HTML if data.results["penetration"]["selected"] else 0
 
 
@@ -103,7 +103,7 @@ def _coefficients(row: Json) -> list[tuple[float | None, Any]]:
 
 
 def nested_table(data: ReportData) -> Table:
-    """F tests between nested models."""
+    """Table of the F tests between nested models."""
     records = [
         row
         | {"full": model_name(row["full"]), "reduced": model_name(row["reduced"])}
@@ -125,7 +125,7 @@ def nested_table(data: ReportData) -> Table:
 
 
 def errors_in_depth_table(data: ReportData) -> Table:
-    """Each model fitted by both procedures, one below the other."""
+    """Table of each model fitted by both procedures, one below the other."""
     penetration = data.results["penetration"]
     rows = [
         (
@@ -164,7 +164,7 @@ def errors_in_depth_table(data: ReportData) -> Table:
 
 
 def fitted_hardness_table(data: ReportData) -> Table:
-    """H_V of each experiment by both procedures."""
+    """Table of H_V of each experiment by both procedures."""
     fits = data.results["penetration"]["errors_in_depth"]["experiments"]
     records = [
         row

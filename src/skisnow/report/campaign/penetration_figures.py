@@ -76,7 +76,7 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
 
 
 def shown_angles(data: ReportData) -> list[float]:
-    """The flat tool and the most frequent edge angle (degrees) of the used experiments."""
+    """Angles (degrees) that `force_depth` draws: that of the flat tool and the most frequent other one, if used."""
     angles = np.array([row["edge_angle_deg"] for row in data.penetration], dtype=float)[data.pressed.used]
     edged, counts = np.unique(angles[angles > 0], return_counts=True)
     # of equally frequent angles the one nearest to the paper's 45°
@@ -89,7 +89,7 @@ def _angle_name(angle: float) -> str:
 
 
 def _evenly_spaced(indices: list[int], data: ReportData) -> list[int]:
-    """At most `MOST_SERIES` series, evenly spaced in the rank of their hardness."""
+    """At most `MOST_SERIES` of these series (indices), evenly spaced in the rank of their hardness."""
     if len(indices) <= MOST_SERIES:
         return indices
     by_hardness = sorted(indices, key=lambda index: data.penetration[index]["H_V_N_per_mm3"])

@@ -93,7 +93,7 @@ def _site_lines(site: str, count: int) -> str:
 def _panel(
     axes: Axes, rows: list[Json], names: Mapping[str, str], values: FloatArray, site: TextArray, points: int
 ) -> None:
-    """points: experiments of the whole figure."""
+    """Draw means with intervals and letters of sites above single experiments; `points`: number in the whole figure."""
     rows = sorted(rows, key=lambda row: row["mean"])
     many, drawn = points > RASTERISE_FROM, (values[thinned(points)], site[thinned(points)])
     for place, row in enumerate(rows):
@@ -282,7 +282,7 @@ def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
 
 
 def _force(fit: ModelFit, hardness: FloatArray, readings: Readings) -> FloatArray:
-    """F = H (a(ϑ) A + b(ϑ) V) of each reading (N)."""
+    """Force F = H (a(ϑ) A + b(ϑ) V) by a fitted model at each reading (N)."""
     angle = readings.edge_angle[readings.series]
     # a slope that the angles do not determine is NaN and counts as 0
     a, b = fit.a0 + np.nan_to_num(fit.a1) * angle, fit.b0 + np.nan_to_num(fit.b1) * angle

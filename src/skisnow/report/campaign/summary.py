@@ -94,7 +94,7 @@ def analysis_dataset(analysis: Analysis) -> Dataset:
 
 
 def _rows(analysis: Analysis, kind: str) -> list[dict[str, Any]]:
-    """Experiments of results.json, with an interval as two columns; other lists are left to results.json."""
+    """Rows of the experiments as in results.json, with an interval as two values; other lists are omitted."""
     rows = []
     for row in analysis.results[kind].get("experiments", ()):
         flat: dict[str, Any] = {}

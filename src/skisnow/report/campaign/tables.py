@@ -69,7 +69,7 @@ def sites_table(data: ReportData) -> Table:
 
 
 def _mean_and_range(tests: UsedTests, sites: tuple[str, ...], *, geometric: bool) -> tuple[Any, ...]:
-    """Number of values, mean with interval, minimum and maximum."""
+    """Cells of a table for some sites together: number of values, mean with interval, minimum and maximum."""
     chosen = np.isin(tests.site, sites)
     values = tests.value[chosen]
     if len(values) == 0:

@@ -53,7 +53,7 @@ _SURVEY: Final = {
 
 
 def verdicts(results: Mapping[str, Any]) -> list[Message]:
-    """One sentence for each pair of sites, of many sites a survey and the uncertain pairs; then tools and the like.
+    """Sentences that compare pairs of sites (of many, a survey and uncertain pairs), then tools, observers and days.
 
     results: contents of `skisnow.results_dict`.
     """
@@ -140,7 +140,7 @@ def _p_text(p: float) -> Message:
 
 
 def _comparison(row: Json) -> tuple[Message, tuple[float, float] | None]:
-    """The larger group first; also the interval of that ratio."""
+    """Comparison of a pair in words, the larger group first, and the interval of their ratio; None without one."""
     larger, smaller, ratio = row["group_a"], row["group_b"], row["ratio"]
     has_interval = row["interval"] is not None and all(map(_is_number, row["interval"]))
     ends = tuple(row["interval"]) if has_interval else None
@@ -157,7 +157,7 @@ def _comparison(row: Json) -> tuple[Message, tuple[float, float] | None]:
 
 
 def caveats(data: ReportData) -> list[Markup]:
-    """Warnings, missing uncertainties, remarks and missing data."""
+    """Sentences with warnings, missing uncertainties, remarks and missing data of a campaign."""
     remarks = data.results["campaign"]["remarks"]
     warnings = data.results["penetration"]["warnings"]
     return [html(sentence) for sentence in (*warnings, *_missing_uncertainties(data), *remarks, *_missing_data(data))]
@@ -198,7 +198,7 @@ def _missing_data(data: ReportData) -> Iterator[Message]:
 
 
 def readings_used(data: ReportData) -> Markup:
-    """Numbers of readings and series behind the nine candidate models."""
+    """Sentences with the numbers of readings and series to which the nine candidate models are fitted."""
     row = data.results["penetration"]["models"][0]
     return prose(
         "All nine candidate models are fitted to the same {n} readings of {m} series. With b = 1 the last residual of "
@@ -211,7 +211,7 @@ def readings_used(data: ReportData) -> Markup:
 
 
 def procedure_comparison(data: ReportData) -> Markup:
-    """Ratio of H_V by the two procedures over the used series."""
+    """Sentence with the ratio of H_V by the two procedures over the used series; empty without one."""
     largest_load = numbers(data.penetration, "H_V_N_per_mm3")
     fitted = numbers(data.results["penetration"]["errors_in_depth"]["experiments"], "H_V_N_per_mm3")
     comparable = data.pressed.used & np.isfinite(largest_load) & np.isfinite(fitted)
@@ -229,7 +229,7 @@ def procedure_comparison(data: ReportData) -> Markup:
 
 
 def seating_findings(data: ReportData) -> Iterator[Markup]:
-    """Size of the depth offsets and number of those that differ from zero."""
+    """Sentences with the number of depth offsets that differ from zero, and the width of their intervals."""
     rows = data.seating
     if not rows:
         yield prose("No used series has the readings that an offset can be estimated from.")
@@ -248,7 +248,7 @@ def seating_findings(data: ReportData) -> Iterator[Markup]:
 
 
 def unloading_finding(data: ReportData) -> Markup:
-    """Number of series whose k_u / H_V has an upper end."""
+    """Sentence with the number of used series whose k_u / H_V has an upper end."""
     used = [row for row in data.unloaded if row["used"]]
     if not used:
         return prose("No used series was unloaded.")

@@ -98,7 +98,7 @@ def new_figure(*, width_mm: float = SINGLE_MM, height_mm: float = 68.0) -> Figur
 
 
 def line_style(place: int) -> dict[str, Any]:
-    """Colour and line style of the line with this number, from 0."""
+    """Arguments for Matplotlib with colour and style of the line with this number, from 0."""
     return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
 
 
@@ -130,7 +130,7 @@ def site_styles(data: ReportData) -> tuple[SiteStyle, ...]:
 
 
 def masks(styles: Sequence[SiteStyle], site: TextArray) -> Iterator[tuple[SiteStyle, BoolArray]]:
-    """Styles with the mask of their observations; styles without observations are omitted."""
+    """Yield each style with the mask of the observations at its sites; a style without observations is omitted."""
     names, inverse = np.unique(site, return_inverse=True)
     for style in styles:
         mask = np.isin(names, style.sites)[inverse]
@@ -155,7 +155,7 @@ def scatter(
 
 
 def thinned(count: int) -> slice:
-    """Slice of every k-th point, at most MOST_POINTS of them.
+    """Slice of every k-th of `count` points, at most MOST_POINTS of them.
 
     k has no divisor below 11: every seventh reading could always be the same load step.
     """
@@ -191,7 +191,7 @@ def _width(widths: list[float], columns: int) -> float:
 
 
 def mark_synthetic(data: ReportData, axes: Axes) -> None:
-    """Mark a picture of synthetic data."""
+    """Write "synthetic data" above axes if the campaign is synthetic."""
     if data.synthetic:
         axes.set_title(Message("synthetic data"), loc="right", fontsize=7.0, color=GREY, fontstyle="italic", pad=3.0)
 
@@ -203,7 +203,7 @@ def spans_a_decade(values: FloatArray) -> bool:
 
 
 def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
-    """Set a logarithmic axis around the positive values, with plain numbers; below two decades also at 2 and 5."""
+    """Make an axis, "x" or "y", logarithmic around the positive values; below two decades with ticks at 2 and 5."""
     positive = values[np.isfinite(values) & (values > 0)]
     low, high = float(positive.min()) / 1.3, float(positive.max()) * 1.3
     axes.set(**{f"{which}scale": "log"})
@@ -222,7 +222,7 @@ def label_time(axes: Axes, time: FloatArray) -> None:
 
 
 def plain_number(value: float, _place: float | None = None) -> str:
-    """Label of a tick: 0.05 instead of 5 × 10⁻², with a minus sign."""
+    """Text of a number at a tick without a power of ten unless it is very small or large, with a minus sign."""
     if value != 0 and not 1e-4 <= abs(value) < 1e5:
         return f"$10^{{{np.log10(abs(value)):.0f}}}$"
     return local_number(f"{value:g}".replace("-", "−"))
@@ -267,7 +267,7 @@ class SitePlot:
         self.handles.extend(scatter(self.axes, x, y, site, self.styles, size=size))
 
     def start_at_zero(self, which: str, values: FloatArray, margin: float) -> None:
-        """Limits from 0 to a margin above the maximum."""
+        """Set the limits of an axis, "x" or "y", from 0 to `margin` times the maximum of the values."""
         self.axes.set(**{f"{which}lim": (0.0, float(values.max()) * margin or 1.0)})
 
     def finish(self) -> Figure:

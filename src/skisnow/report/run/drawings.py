@@ -70,7 +70,7 @@ def _carved_radius(run: Run) -> Markup:
 
 
 def _other_strength(run: Run) -> Markup:
-    """Sentence about laws in Python that replace those of the scenario, except friction; empty without one."""
+    """Caption's sentence about Python laws that replace laws of the scenario, except friction; empty without one."""
     laws = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
     if not laws:
         return Markup("")

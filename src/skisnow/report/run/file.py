@@ -187,7 +187,7 @@ def _vector(
     stem: str, dimensions: tuple[str, ...], units: str, meaning: str, source: str, *,
     names: Sequence[str] = "xyz", **further: str,
 ) -> list[RunVariable]:  # fmt: skip
-    """Variables of the components of a vector."""
+    """Variables of run.nc for the components of a vector, named `stem` with each of `names`."""
     return [
         RunVariable(stem.format(name), dimensions, units, meaning.format(name), source, component, **further)
         for component, name in enumerate(names)
@@ -197,7 +197,7 @@ def _vector(
 def _scalars(
     stem: str, dimensions: tuple[str, ...], source: str, rows: Sequence[tuple[str, str, str]], coordinates: str = ""
 ) -> list[RunVariable]:
-    """Variables of several numbers of one part of a run: name, unit and meaning of each."""
+    """Variables of run.nc for several numbers of one part of a run; `rows`: name, unit and meaning of each."""
     return [
         RunVariable(stem.format(name), dimensions, units, meaning, f"{source}.{name}", coordinates=coordinates)
         for name, units, meaning in rows

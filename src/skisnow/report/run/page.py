@@ -130,7 +130,7 @@ def _headline(run: Run) -> Markup:
 
 
 def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:
-    """A number, or the range of a number that varies over the place."""
+    """Text of a number in a unit of this size, or of its range if it varies over the place, with the unit."""
     if over_place is None:
         return f"{_number(None if value is None else value / size)} {unit}"
     low, high = float(over_place.values.min()), float(over_place.values.max())
@@ -205,7 +205,7 @@ def _number_in_words(name: str, value: float) -> str:
 
 
 def _angle(angle: float) -> str:
-    """An angle in degrees with three digits; below a thousandth of a degree it is 0."""
+    """Text of an angle (rad) in degrees with three digits; below a thousandth of a degree it is 0."""
     return _number(angle / DEGREE if abs(angle) >= 0.001 * DEGREE else 0.0)
 
 

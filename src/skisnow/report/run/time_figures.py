@@ -97,7 +97,7 @@ _RATE: Final = ("delayed_snow", "snow_damping")
 
 
 def run_energies(run: Run) -> Figure:
-    """Draw stored energies and losses on top of each other, where a level upper rim is a zero residual; and losses."""
+    """Draw energies and losses stacked, whose sum is constant if the residual is zero; beside it only the losses."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=80.0)
     total_axes, losses = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     shares = stacked_energies(run)
@@ -227,9 +227,9 @@ def gross_grip_utilisation(run: Run) -> FloatArray:
 
 
 def slip_of_a_place(run: Run) -> float:
-    """Distance (m) that a place of snow slips across while one ski passes, from the shear's work; NaN without grip.
+    """Distance u (m) by which a ski slips sideways over a place of snow while it passes; NaN without grip.
 
-    W/s = u ∫ S_f e ds/l for both skis, with the work W over the way s and the length l of ski in the snow.
+    From the work W of shear over the way s: W/s = u ∫ S_f e ds/l for both skis, with the length l of ski in the snow.
     """
     capacity = _shear_capacity(run)
     per_length = float(capacity[capacity > 0.0].mean()) if np.any(capacity > 0.0) else 0.0
@@ -275,7 +275,7 @@ def run_along_ski(run: Run) -> Figure:
 
 
 def highest(values: FloatArray) -> float:
-    """Upper end of the colour scale of a map."""
+    """Upper end of the colour scale of a map: a high quantile of the positive values; 1 without one."""
     positive = values[values > 0.0]
     return float(np.percentile(positive, _SHARE_SHOWN)) if positive.size else 1.0
 

@@ -224,7 +224,7 @@ def hide_overlapping(axes: Axes, mm_per_unit: float) -> None:
 
 
 def _box(word: Annotation, mm_per_unit: float) -> tuple[float, float, float, float]:
-    """Centre and half sizes of a text (mm)."""
+    """Centre x, y and half width and height (mm) of a time mark's text on the figure."""
     (x, y), (aside, above), size = word.xy, word.get_position(), float(word.get_fontsize()) * _POINT_MM
     half_width = 0.5 * _LETTER * size * (len(word.get_text()) + 1)  # and a space
     more = half_width if word.get_horizontalalignment() == "left" else 0.0

@@ -73,7 +73,7 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
 
 
 def _new_map(summary: TrackSummary, lowest_mm: float) -> tuple[Figure, Axes]:
-    """Figure with one map of the usable places, with equal scales and a least height."""
+    """Empty figure and axes for a map of the usable places, with equal scales and a minimum height (mm)."""
     limits = track_limits(summary.track.place[summary.track.usable], margin=0.5, share=_MARGIN)
     height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, lowest_mm, _LARGEST_MM))
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
@@ -189,7 +189,7 @@ def track_along(summary: TrackSummary) -> Figure:
 
 
 def _with_gaps(summary: TrackSummary, numbers: IntArray, values: FloatArray) -> FloatArray:
-    """Values at these points, NaN at the first one after each gap, so that the line has a break."""
+    """Values at points with these indices, NaN at the first one after each gap, so that a line has a break there."""
     parted = values[numbers].astype(float)
     parted[1:][np.diff(summary.motion.smoothed.part[numbers]) > 0] = np.nan
     return parted
@@ -238,7 +238,7 @@ def _draw_radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> N
 
 
 def _ridden_curvature(summary: TrackSummary) -> FloatArray:
-    """Curvature of the places with more than walking speed, NaN elsewhere."""
+    """Curvature (1/m) at each point with more than walking speed, NaN elsewhere."""
     return np.where(summary.motion.speed >= WALKING, summary.motion.curvature, np.nan)
 
 

@@ -211,7 +211,7 @@ def _draw_distances(axes: Axes, comparison: Comparison) -> None:
 
 
 def _thinned(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Evenly spaced points of a long line."""
+    """Evenly spaced points (x, y) of a long line; all points of a short one."""
     chosen = drawn_points(0, len(x) - 1)
     return x[chosen], y[chosen]
 

@@ -113,7 +113,7 @@ _TURN_COLUMNS: Final = (
 
 
 def _table_lines(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, str, int]], words: str) -> list[str]:
-    """Heading with the count, definition, and rows in columns; negative digits are a number of decimals."""
+    """Lines of a table: heading, definition, rows. Columns: key, label, significant digits, if negative decimals."""
     if not rows:
         return ["", f"0 {title}", *fill(words, WIDTH).splitlines()]
     cells = [[label for _, label, _ in columns]]
@@ -200,7 +200,7 @@ _ROUNDING: Final = 1e-12  # largest size of a distance (m) that is an error of r
 
 
 def metres(value: float | None, exact: float, digits: int = 3) -> str:
-    """A distance without digits below the precision ``exact`` (m) of the places; 0 for exact places.
+    """Text of a distance in m, without digits below the precision ``exact`` (m) of the places, which may be 0.
 
     >>> metres(4e-17, 0.0), metres(2.345, 3.0), metres(0.4, 3.0), metres(41.987, 0.02, 4), metres(41.987, 0.3, 4)
     ('0 m', '2 m', 'below 1 m', '41.99 m', '42.0 m')
@@ -209,7 +209,7 @@ def metres(value: float | None, exact: float, digits: int = 3) -> str:
 
 
 def rounded(value: float | None, exact: float, digits: int = 3) -> str:
-    """A number without digits below the precision ``exact``; with ``digits`` significant digits if that is 0."""
+    """Text of a number without digits below the precision ``exact``; with ``digits`` significant digits if it is 0."""
     if value is not None and abs(value) < _ROUNDING:
         value = 0.0
     if value is None or exact <= 0.0 or not math.isfinite(value):
@@ -269,7 +269,7 @@ TURN_COLUMNS: Final = (
 
 
 def turn_rows(summary: TrackSummary) -> list[dict[str, Any]]:
-    """Row of each turn.
+    """Values of each turn of a track, by the names of `TURN_COLUMNS`.
 
     Lean is the angle of balance atan(v²/(g r)) at the minimum radius r, with its interval from that of r. The best turn
     of a side is the one with the largest ratio of the speeds out and in.

@@ -160,7 +160,7 @@ def middle_track(run: Run) -> TimedTrack:
 
 
 def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
-    """Widths across and along (m) of the band of 90 % of the tracks, at the last time that three runs reach."""
+    """Widths (m), across and along the track, of the band with 90 % of the runs, at the last time that three reach."""
     aside, ahead = (band_of(values[:, None])[:, 0] for values in end_offsets(nominal, tracks))
     return float(aside[4] - aside[0]), float(ahead[4] - ahead[0])
 
@@ -185,7 +185,7 @@ class BandShares:
 
 
 def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandShares | None:
-    """First-order Sobol shares by regression on logarithms; None with fewer than three runs more than inputs."""
+    """First-order Sobol shares of the inputs in the variance at the band's end; None with too few runs."""
     keys = [key for key in (ensemble[0].values if ensemble else ()) if len({run.values[key] for run in ensemble}) > 1]
     if not keys:
         return None
@@ -199,7 +199,9 @@ def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandSha
 
 @dataclass(frozen=True, slots=True)
 class BandInput:
-    """One input of a band.
+    """One uncertain input of the ensemble of runs.
+
+    key: key of the scenario.
 
     spread: origin of the spread: ``measured`` by the campaign, or ``prior``.
     value: median in the key's unit; None for a prior.
@@ -216,14 +218,14 @@ class BandInput:
 
     @property
     def in_words(self) -> str:
-        """Spread, distribution and origin."""
+        """Spread, distribution and origin in words."""
         if self.spread == "measured":
             return Message("measured: log-normal with the 95 % interval of {origin}", origin=self.origin)
         return Message("prior: even in its logarithm; {origin}", origin=self.origin)
 
 
 def band_inputs(chain: TurnChain) -> Iterator[BandInput]:
-    """Inputs of the band: first the measured ones, then the priors."""
+    """Uncertain inputs of the ensemble: first the measured ones, then the priors."""
     for of in chain.measured:
         yield BandInput(of.key, "measured", "log-normal", of.value, of.low, of.high, chain.site)
     own = values_of(chain.nominal.scenario)

@@ -96,7 +96,7 @@ def offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArr
 
 
 def band_of(values: FloatArray) -> FloatArray:
-    """The 5, 25, 50, 75 and 95 % quantiles at each time, (5, n); NaN with fewer than three runs."""
+    """The 5, 25, 50, 75 and 95 % quantiles of values (runs, n) at each time, (5, n); NaN with fewer than three runs."""
     band = np.full((len(QUANTILES), values.shape[1]), np.nan)
     enough = np.isfinite(values).sum(axis=0) >= FEWEST
     if enough.any():
@@ -134,7 +134,7 @@ _SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")
 
 
 def draw_runs(runs: Mapping[str, Run]) -> Figure:
-    """Draw runs on one slope by name, the skis at 0.9 of the last time that all reach; the first is the reference."""
+    """Draw runs on one slope by name: paths, distances from the first one, depths along the ski at one late time."""
     named = list(runs.items())
     limits = track_limits(np.concatenate([run.place for run in runs.values()]))
     height = plan_height_mm(limits)

@@ -312,7 +312,7 @@ def shares_table(chain: TurnChain) -> Table:
 
 
 def _shares_of(key: str, shares: BandShares | None) -> tuple[Any, Any]:
-    """Shares of an input in the variance across and along (%) with intervals; (None, None) if it does not vary."""
+    """Cells with an input's shares (%) of the variance across and along the track, with intervals; None if unknown."""
     if shares is None or key not in shares.keys:
         return (None, None), (None, None)
     place = shares.keys.index(key)

@@ -125,7 +125,7 @@ def _in_words(key: str) -> Markup:
 
 
 def _shares(chain: TurnChain) -> BandShares | None:
-    """Shares of the band's inputs; None if no input changes its end."""
+    """Shares of the inputs in the variance at the band's end; None if there are none, or all are 0."""
     shares = band_shares(middle_track(chain.nominal), chain.ensemble)
     return shares if shares is not None and shares.aside.share.any() else None
 
@@ -220,7 +220,7 @@ _RADII: Final = (
 
 
 def _compare(sentences: Sequence[str], value: float | None, other: float | None, /, **fields: str) -> Markup:
-    """The sentence for a value that is smaller than the other, alike or unknown, or larger."""
+    """One of three sentences: for a value that is smaller than the other, alike or unknown, or larger."""
     fields |= {"value": significant(value), "other": significant(other), "percent": ""}
     if value is None or other is None or abs(value - other) < ALIKE * abs(other):
         return prose(sentences[1], **fields)
@@ -229,7 +229,7 @@ def _compare(sentences: Sequence[str], value: float | None, other: float | None,
 
 
 def _band_fields(chain: TurnChain) -> dict[str, str]:
-    """Number of runs of the ensemble, and the widths of their band."""
+    """Fields of sentences, as texts: number of runs of the ensemble, and the widths of their band (m)."""
     aside, ahead = band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
     runs = counted(len(chain.ensemble), "{count} run", "{count} runs")
     return {"runs": runs, "aside": significant(aside, 2), "ahead": significant(ahead, 2)}
