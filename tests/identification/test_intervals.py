@@ -196,7 +196,7 @@ def solution(kind: str, *, bend: float = 0.0) -> Any:
     return SimpleNamespace(problem=problem, optimum=found, widening=WIDENING, uncertainty=lambda: known)
 
 
-@pytest.mark.parametrize("likelihood", [intervals._quadratic, intervals._true])
+@pytest.mark.parametrize("likelihood", [intervals._quadratic_likelihood, intervals._exact_likelihood])
 def test_likelihoods_of_normal_noise(likelihood: Any) -> None:
     """-χ²/2 over the square of the widening; outside the bounds nothing is likely."""
     found = likelihood(solution("track", bend=0.4))
@@ -210,7 +210,7 @@ def test_likelihoods_of_normal_noise(likelihood: Any) -> None:
 
 
 def test_without_residuals_there_is_no_likelihood() -> None:
-    assert intervals._true(solution("marks"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0] == -np.inf
+    assert intervals._exact_likelihood(solution("marks"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0] == -np.inf
 
 
 class Sampler:

@@ -159,7 +159,7 @@ def posterior_places(
     if uncertainty is None or uncertainty.groups:
         return None, "no posterior: the data leave a parameter open"
     simulated = any(observation.kind == "track" for observation in solution.problem.observations)
-    likelihood = _quadratic(solution) if simulated else _true(solution)
+    likelihood = _quadratic_likelihood(solution) if simulated else _exact_likelihood(solution)
     p = len(solution.optimum.place)
     walkers = max(_WALKERS_PER_PARAMETER * p, 16)
     steps = max(round(samples / walkers / (1.0 - _BURN_IN)), 20)
@@ -174,7 +174,7 @@ def posterior_places(
     return np.asarray(chain, dtype=float), QUADRATIC_POSTERIOR if simulated else EXACT_POSTERIOR
 
 
-def _quadratic(solution: Solution) -> Callable[[FloatArray], FloatArray]:
+def _quadratic_likelihood(solution: Solution) -> Callable[[FloatArray], FloatArray]:
     """Log likelihood as a function of places (n, p), from residuals to second order about the optimum."""
     optimum = solution.optimum
     lower, upper = bounds_of(solution.problem.parameters)
@@ -191,7 +191,7 @@ def _quadratic(solution: Solution) -> Callable[[FloatArray], FloatArray]:
     return log_probability
 
 
-def _true(solution: Solution) -> Callable[[FloatArray], FloatArray]:
+def _exact_likelihood(solution: Solution) -> Callable[[FloatArray], FloatArray]:
     """Log likelihood as a function of places (n, p), from the residuals computed at each."""
     lower, upper = bounds_of(solution.problem.parameters)
     widening = solution.widening
@@ -284,7 +284,7 @@ def add_bootstrap_intervals(identification: Identification, solution: Solution, 
 
 
 def _begin(solution: Solution, plan: SearchRequest) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Residuals of each resample at the best place, and the bounded minimum of the linearised model."""
+    """Residuals of each resample at the best place, and the minimum of its linearised model inside the bounds."""
     fitted, jacobian = solution.optimum.residuals, solution.optimum.jacobian
     assert jacobian is not None
     data = sum(solution.problem.lengths)

@@ -242,7 +242,7 @@ class Search:
         return end
 
     def resume(self, state: SearchState) -> tuple[SearchState, float]:
-        """Continue a search of other residuals; returns the state and the distance (rms) of both kinds of residuals."""
+        """Continue a search with other residuals; returns the state and the rms difference of old and new residuals."""
         assert state.jacobian is not None
         step = self._step(state, _FIRST_DAMPING)
         first = self.residuals([state.place + step])[0]
