@@ -23,7 +23,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
-from skisnow.interop.fmu.models import UNITS, _require_own_laws, _snow_parameters, contact_model, sledge_model
+from skisnow.interop.fmu.models import UNITS, _require_builtin_laws, _snow_parameters, contact_model, sledge_model
 from skisnow.interop.fmu.writing import Version
 from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulation.run_setup import laid_out
@@ -432,10 +432,10 @@ def test_what_varies_over_the_place_is_not_offered() -> None:
 @pytest.mark.parametrize("own", ["penetration", "friction_in_python", "shear_in_python"])
 def test_laws_of_python_are_rejected(own: str) -> None:
     snow = SimpleNamespace(penetration=None, friction_in_python=None, shear_in_python=None)
-    _require_own_laws(cast("SnowField", snow))
+    _require_builtin_laws(cast("SnowField", snow))
     setattr(snow, own, lambda: None)
     with raises(ParameterError, "no_data"):
-        _require_own_laws(cast("SnowField", snow))
+        _require_builtin_laws(cast("SnowField", snow))
 
 
 def test_every_variable_has_a_unit_that_is_defined_and_says_what_it_is() -> None:
@@ -449,7 +449,7 @@ def test_no_model_is_made_of_laws_in_python(model: Callable[..., object], monkey
     def refused(_: SnowField) -> None:
         raise ParameterError("an FMU has no Python in it")
 
-    monkeypatch.setattr("skisnow.interop.fmu.models._require_own_laws", refused)
+    monkeypatch.setattr("skisnow.interop.fmu.models._require_builtin_laws", refused)
     with pytest.raises(ParameterError, match="no Python"):
         model(SCENARIO, step=STEP)
 

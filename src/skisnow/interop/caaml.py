@@ -55,15 +55,15 @@ def caaml_text(pit: SnowPit) -> str:
 
 
 def _profile_xml(pit: SnowPit) -> Iterator[str]:
-    own = re.sub(r"[^\w.-]", "_", pit.name) or "pit"
-    yield f"<caaml:SnowProfile {_NAMES} gml:id={quoteattr(f'skisnow-{own}')}>"
+    pit_id = re.sub(r"[^\w.-]", "_", pit.name) or "pit"
+    yield f"<caaml:SnowProfile {_NAMES} gml:id={quoteattr(f'skisnow-{pit_id}')}>"
     if pit.comment:
         yield _nested("metaData", _element_xml("comment", pit.comment))
     yield _nested("timeRef/recordTime/TimeInstant", _element_xml("timePosition", _timestamp(pit.time)))
     person = _element_xml("name", pit.observer or "unknown")
-    yield f'<caaml:srcRef><caaml:Person gml:id="observer-{own}">{person}</caaml:Person></caaml:srcRef>'
-    yield f'<caaml:locRef gml:id="location-{own}">'
-    yield from _place_xml(pit, own)
+    yield f'<caaml:srcRef><caaml:Person gml:id="observer-{pit_id}">{person}</caaml:Person></caaml:srcRef>'
+    yield f'<caaml:locRef gml:id="location-{pit_id}">'
+    yield from _place_xml(pit, pit_id)
     yield "</caaml:locRef>"
     yield '<caaml:snowProfileResultsOf><caaml:SnowProfileMeasurements dir="top down">'
     yield from _measurements_xml(pit)
@@ -72,7 +72,7 @@ def _profile_xml(pit: SnowPit) -> Iterator[str]:
     yield "</caaml:SnowProfile>"
 
 
-def _place_xml(pit: SnowPit, own: str) -> Iterator[str]:
+def _place_xml(pit: SnowPit, pit_id: str) -> Iterator[str]:
     yield _element_xml("name", pit.name)
     yield _element_xml("obsPointSubType", "snow profile location")
     if pit.elevation is not None:
@@ -84,7 +84,7 @@ def _place_xml(pit: SnowPit, own: str) -> Iterator[str]:
         yield _nested("validSlopeAngle/SlopeAnglePosition", angle, uom="deg")
     if pit.latitude_deg is not None and pit.longitude_deg is not None:
         where = f"{_number(pit.latitude_deg)} {_number(pit.longitude_deg)}"
-        point = f'<gml:Point gml:id="point-{own}" srsName="urn:ogc:def:crs:EPSG::4326" srsDimension="2">'
+        point = f'<gml:Point gml:id="point-{pit_id}" srsName="urn:ogc:def:crs:EPSG::4326" srsDimension="2">'
         yield _nested("pointLocation", f"{point}<gml:pos>{where}</gml:pos></gml:Point>")
     if pit.country:
         yield _element_xml("country", pit.country)

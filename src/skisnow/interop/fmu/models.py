@@ -51,7 +51,7 @@ def axes_of(scenario: Scenario) -> str:
 def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
     """FMU model of rigid skis in the snow of a scenario; they start where its sledge would be set down."""
     setup = laid_out(scenario)
-    _require_own_laws(setup.snow)
+    _require_builtin_laws(setup.snow)
     sides = SIDES if skis == len(SIDES) else ("ski",)
     runner = Runner.of(scenario.ski)
     contact = SnowContact(setup.snow, [runner] * skis, spacing=setup.numbers["line_spacing_m"])
@@ -84,7 +84,7 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
             "not_supported"
         )
     setup = laid_out(scenario)
-    _require_own_laws(setup.snow)
+    _require_builtin_laws(setup.snow)
     dynamics, outputs = setup.dynamics, list[Variable]()
     for name, unit, about, start in (
         ("position", "m", "state of the middle between the boots", dynamics.position),
@@ -122,7 +122,7 @@ def _start_values(variables: tuple[Variable, ...]) -> FloatArray:
     return np.array([variable.start for variable in variables])
 
 
-def _require_own_laws(snow: SnowField) -> None:
+def _require_builtin_laws(snow: SnowField) -> None:
     if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
         raise ParameterError("an FMU contains no Python: it accepts the built-in laws, not a user-defined one").tag(
             "no_data"
