@@ -81,7 +81,7 @@ def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied:
     usual: dict[str, Any] = {"tilt": (0.0, 0.0), "height": 0.0, "past_end": False}
     usual |= {"touches": True, "drive": None}
     stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))
-    assert simulated_run._outcome_now(stub, flying) == outcome
+    assert simulated_run._current_outcome(stub, flying) == outcome
 
 
 def test_boots_that_nothing_carries_turn_as_a_level_between_their_skis() -> None:

@@ -154,7 +154,7 @@ class StrengthDrive:
 
 @dataclass(frozen=True, slots=True)
 class TableControl:
-    """Control that moves the boots as a table states."""
+    """Control of the boots that returns the poses of a table."""
 
     table: Boots
 

@@ -253,7 +253,7 @@ class Run(Shown):
             ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
             (
                 "speed",
-                f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_fastest_text(self.speed)}",
+                f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_max_speed_text(self.speed)}",
             ),
             ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),
             ("turn radius", "straight" if radius is None else f"{amount(radius, 'm')} (median)"),
@@ -281,10 +281,10 @@ class Run(Shown):
         """
         potential = self.energies["potential"]
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        taken = sum(max(0.0, -float(self._energy(name)[-1])) for name in GIVEN)
+        taken = sum(max(0.0, -float(self._energy_or_zero(name)[-1])) for name in GIVEN)
         return float(self.energies["kinetic"][0]) + lost + taken + float(potential[0] - potential.min())
 
-    def _energy(self, name: str) -> FloatArray:
+    def _energy_or_zero(self, name: str) -> FloatArray:
         return self.energies.get(name, np.zeros(len(self.time)))
 
     @property
@@ -298,7 +298,7 @@ class Run(Shown):
         """|energy at the end + losses - energy at the start| (J)."""
         change = sum(float(self.energies[name][-1] - self.energies[name][0]) for name in STORED)
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        return abs(change + lost - sum(float(self._energy(name)[-1]) for name in GIVEN))
+        return abs(change + lost - sum(float(self._energy_or_zero(name)[-1]) for name in GIVEN))
 
     def has_residual_above(self, share: float) -> bool:
         """True if the energy residual exceeds a share of the energy exchanged, and 0.001 J."""
@@ -312,6 +312,6 @@ class Run(Shown):
         return float(np.quantile(radius, share)) if radius.size else None
 
 
-def _fastest_text(values: FloatArray) -> str:
+def _max_speed_text(values: FloatArray) -> str:
     finite = values[np.isfinite(values)]
     return amount(float(finite.max()) if finite.size else None, "m/s")

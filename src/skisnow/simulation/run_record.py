@@ -46,7 +46,7 @@ class Record:
     _moments: list[Moment] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self._moments.append(self._present())
+        self._moments.append(self._current_moment())
 
     def advance(
         self, moment: float, *, replace: bool = False, is_over: Callable[[], bool] = lambda: False
@@ -56,7 +56,7 @@ class Record:
         The outcome if the steps cannot go on. `is_over`: see `Setup.advance`.
         """
         ended = self.setup.advance(moment, self.run_length, is_over=is_over)
-        last, present = self._moments[-1], self._present()
+        last, present = self._moments[-1], self._current_moment()
         self.run_length += _arc(last, present)
         if (replace and len(self._moments) > 1) or present.row[0] <= last.row[0]:
             self._moments[-1] = present
@@ -64,7 +64,7 @@ class Record:
             self._moments.append(present)
         return _OUTCOMES.get(ended)
 
-    def _present(self) -> Moment:
+    def _current_moment(self) -> Moment:
         setup, row = self.setup, self.setup.dynamics.moment
         if setup.drive is not None:
             return Moment(setup.place, setup.attitude, setup.velocity, row)
@@ -81,7 +81,7 @@ class Record:
         return not gained <= GAINED_SHARE * exchanged + GAINED
 
     def drop(self) -> None:
-        """Remove the last moment."""
+        """Remove the moment stored last."""
         if len(self._moments) > 1:
             gone = self._moments.pop()
             self.run_length -= _arc(self._moments[-1], gone)

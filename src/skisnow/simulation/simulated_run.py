@@ -240,19 +240,19 @@ class _Watch:
 
     def __post_init__(self) -> None:
         self._course = GatesAhead(self.setup.scenario.course)
-        self._finish_course()
+        self._end_behind_last_gate()
 
     def look(self) -> bool:
         """Check the present moment; True where the run is over."""
         setup = self.setup
         self._flying = 0.0 if setup.touches else self._flying + setup.time - self._last
         self._last = setup.time
-        self.outcome = _outcome_now(setup, self._flying)
+        self.outcome = _current_outcome(setup, self._flying)
         if self.outcome is None:
-            self._finish_course()
+            self._end_behind_last_gate()
         return self.outcome is not None
 
-    def _finish_course(self) -> None:
+    def _end_behind_last_gate(self) -> None:
         if self._course.is_over(self.setup.place, CLEAR):
             self.outcome = "finished"
 
@@ -288,7 +288,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
     return watch.outcome
 
 
-def _outcome_now(setup: Setup, flying: float) -> Outcome | None:
+def _current_outcome(setup: Setup, flying: float) -> Outcome | None:
     (leaning, pitching), skier = setup.tilt, setup.scenario.skier
     if skier is not None and leaning > TIPPED and setup.touches:
         return "fell"
