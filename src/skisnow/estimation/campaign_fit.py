@@ -182,10 +182,10 @@ class SeriesFit:
         totals: FloatArray = np.bincount(self._group, weights=counted, minlength=self._n_groups).astype(np.float64)
         return totals
 
-    def _per_series(self, values: FloatArray) -> FloatArray:
+    def _to_series(self, values: FloatArray) -> FloatArray:
         return values if self._n_groups == 1 else values[self._group]
 
-    def _per_reading(self, values: FloatArray) -> FloatArray:
+    def _to_readings(self, values: FloatArray) -> FloatArray:
         return values if self._n_groups == 1 else values[self._group][self._readings.series]
 
     def _linearise(self) -> _Line:
@@ -198,7 +198,7 @@ class SeriesFit:
     def _reading_weights(self, slope: FloatArray) -> FloatArray:
         """Inverse variances (1/m²) of the depths, 0 for readings without contact; slope: de/d ln V (m)."""
         load2 = self._g[self._readings.series] ** 2 * self._load2
-        return self._seen / (self._depth2 + slope**2 * (load2 + self._per_reading(self._spreads.scatter2)))
+        return self._seen / (self._depth2 + slope**2 * (load2 + self._to_readings(self._spreads.scatter2)))
 
     def _scatter_step(self, line: _Line, free: FloatArray) -> float:
         """One Newton step on 1/Q towards Q + ν₀ s₀²/s² = free readings + ν₀: Paule and Mandel with a prior."""
@@ -230,11 +230,11 @@ class SeriesFit:
 
     def _posterior(self, reduced: _Reduced) -> _Posterior:
         """(g, δ) of each series with the present spreads."""
-        of_g, of_d = self._per_series(1.0 / self._spreads.layering2), self._per_series(1.0 / self._spreads.seating2)
+        of_g, of_d = self._to_series(1.0 / self._spreads.layering2), self._to_series(1.0 / self._spreads.seating2)
         gg, dd = reduced.gg + of_g, reduced.dd + of_d
         determinant = gg * dd - reduced.gd**2
         Cgg, Cgd, Cdd = dd / determinant, -reduced.gd / determinant, gg / determinant
-        right_g = reduced.right_g + of_g * self._per_series(self._spreads.mean_exponent)
+        right_g = reduced.right_g + of_g * self._to_series(self._spreads.mean_exponent)
         return _Posterior(Cgg * right_g + Cgd * reduced.right_d, Cgd * right_g + Cdd * reduced.right_d, Cgg, Cgd, Cdd)
 
     def _spread_rounds(self, reduced: _Reduced) -> tuple[_Posterior, float]:
@@ -254,7 +254,7 @@ class SeriesFit:
         precision = priors.mean_layering**-2
         mean = precision + self._total(posterior.g) / spreads.layering2
         mean = mean / (precision + m / spreads.layering2)
-        deviation2 = (posterior.g - self._per_series(mean)) ** 2
+        deviation2 = (posterior.g - self._to_series(mean)) ** 2
         layering2 = priors.layering_series * priors.layering**2 + self._total(deviation2 + posterior.Cgg)
         return spreads._replace(
             seating2=np.maximum(seating2 / (priors.seating_series + m), _LEAST_SEATING2),
@@ -274,7 +274,7 @@ class SeriesFit:
         C = C.reshape(-1, 3, 3)
         sums = self._readings.sums
         J = (-line.slope, line.slope * self._share, np.ones_like(line.slope))
-        scatter2 = line.weight**2 * line.slope**2 * self._per_reading(self._spreads.scatter2)
+        scatter2 = line.weight**2 * line.slope**2 * self._to_readings(self._spreads.scatter2)
         # Σ_j of the products of J, so that no reading needs its own C J
         middle = np.empty((len(C), 3, 3))
         for i in range(3):
@@ -289,9 +289,9 @@ class SeriesFit:
     def _freedom(self, line: _Line, posterior: _Posterior, free: FloatArray) -> Freedom:
         """Twice the Fisher information of the logarithm of each spread, of prior and data."""
         priors, sums = self._priors, self._readings.sums
-        of_d = 1.0 - posterior.Cdd / self._per_series(self._spreads.seating2)
-        of_g = 1.0 - posterior.Cgg / self._per_series(self._spreads.layering2)
-        share = self._per_reading(self._spreads.scatter2) * line.slope**2 * line.weight
+        of_d = 1.0 - posterior.Cdd / self._to_series(self._spreads.seating2)
+        of_g = 1.0 - posterior.Cgg / self._to_series(self._spreads.layering2)
+        share = self._to_readings(self._spreads.scatter2) * line.slope**2 * line.weight
         readings = self._total(self._n_seen)
         free_share = np.maximum(self._total(free), 0.0) / np.maximum(readings, 1.0)
         precision = priors.mean_layering**-2 + self._total(of_g) / self._spreads.layering2

@@ -48,10 +48,10 @@ class NestedRows:
 def compare_nested_rows(fits: tuple[ModelFit, ...]) -> tuple[NestedRows, ...]:
     """Compare all nested pairs of one hardness."""
     by_model = {fit.model: fit for fit in fits}
-    return tuple(_compare(by_model[full], by_model[reduced]) for full, reduced in NESTED_PAIRS)
+    return tuple(_compare_nested_pair(by_model[full], by_model[reduced]) for full, reduced in NESTED_PAIRS)
 
 
-def _compare(full: ModelFit, reduced: ModelFit) -> NestedRows:
+def _compare_nested_pair(full: ModelFit, reduced: ModelFit) -> NestedRows:
     test = nested_f_test(
         full.sse, reduced.sse, n=full.n, n_parameters_full=full.n_parameters, n_parameters_reduced=reduced.n_parameters
     )
