@@ -241,7 +241,7 @@ class Contact(Declared):
             raise ParameterError(
                 "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none"
             ).tag("contradiction")
-        self._require_one_friction()
+        self._require_consistent_friction()
         if self.layers is not None and (self.layer_depth is not None or self.hardness_growth > 0.0):
             raise ParameterError(
                 "snow.layers_file gives the hardness over the depth. Remove it, or snow.layer_depth_mm and "
@@ -259,7 +259,7 @@ class Contact(Declared):
                 "layers of snow cannot be combined with snow.damping_N_s_per_mm3 or snow.delayed_share. Remove one"
             ).tag("contradiction")
 
-    def _require_one_friction(self) -> None:
+    def _require_consistent_friction(self) -> None:
         if self.friction_law is None:
             if self.temperature is not None or self.liquid_water is not None:
                 raise ParameterError(

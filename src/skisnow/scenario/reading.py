@@ -94,7 +94,7 @@ def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     >>> scenario.sledge.mass, scenario.contact.snow.snow_hardness
     (90.0, 200000000.0)
     """
-    scenario, messages, _ = _build_or_explain(load_input(name_or_path).changed(changes), Sources())
+    scenario, messages, _ = _resolve_and_build(load_input(name_or_path).changed(changes), Sources())
     for text in messages:
         warnings.warn(RangeWarning(text).tag("unusual"), stacklevel=2)
     return scenario
@@ -143,7 +143,7 @@ def build_input(scenario_input: ScenarioInput, *, sources: Sources | None = None
 
     sources: cache of skis and snows for many scenarios.
     """
-    scenario, messages, resolution = _build_or_explain(scenario_input, sources or Sources())
+    scenario, messages, resolution = _resolve_and_build(scenario_input, sources or Sources())
     expected = (
         _warnings_of_built_in(scenario_input.title)
         if scenario_input.file is None and scenario_input.base is None
@@ -157,10 +157,10 @@ def build_input(scenario_input: ScenarioInput, *, sources: Sources | None = None
 @cache
 def _warnings_of_built_in(name: str) -> tuple[str, ...]:
     """Warnings about a built-in scenario itself, which its file explains."""
-    return implausible_values(_build_or_explain(load_input(name), Sources())[0])
+    return implausible_values(_resolve_and_build(load_input(name), Sources())[0])
 
 
-def _build_or_explain(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
+def _resolve_and_build(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
     if scenario_input.base is not None:
         return (
             changed_scenario(scenario_input.base, scenario_input.values),
