@@ -132,7 +132,7 @@ class SnowField(Shown):
         _require("failure_shear_stress", _minimum(self.failure_shear_stress), 0.0)
         _require("unloading_ratio", self.unloading_ratio, 1.0)
         self._reject_second_side_force()
-        self._require_one_place()
+        self._require_valid_shares()
         _require("residual_ratio", self.residual_ratio, 0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError("SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1").tag(
@@ -168,7 +168,7 @@ class SnowField(Shown):
                 "failure_shear_stress to 0 and remove the shear law"
             ).tag("contradiction", kind=type(law).__name__)
 
-    def _require_one_place(self) -> None:
+    def _require_valid_shares(self) -> None:
         """Reject shares that are not above 0, and a strength share next to an S_f or law that it cannot multiply."""
         _require("strength_share", _minimum(self.strength_share), 0.0, above=True)
         _require("friction_share", _minimum(self.friction_share), 0.0, above=True)
