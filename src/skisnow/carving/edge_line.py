@@ -70,7 +70,7 @@ class EdgeLine:
     def across(
         self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray
     ) -> FloatArray:
-        """Position (m) of the edge of sections."""
+        """Position (m) of the edge, from width, base height, deflection (m) and twist (rad) of sections."""
         across = width / 2.0 * np.cos(self._edge_angle + twist)
         return np.asarray(across + (base_height + deflection) * math.sin(self._edge_angle))
 

@@ -106,7 +106,7 @@ class Equilibrium(Shown):
     warnings
         Reasons why the answer is outside the range of the model.
     iterations
-        Of Newton's method.
+        Iterations of Newton's method.
     request
         Ski, snow and load of the question, for `sensitivity`; None if the answer has no derivatives.
     median_radius

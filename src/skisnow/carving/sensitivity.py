@@ -157,6 +157,35 @@ class CarveDerivatives:
             out.append(Sensitivity(output, name, of_output, value, growth, relative, kink))
         return tuple(out)
 
+<<<<<<< Updated upstream
+=======
+    def _beside(self, name: str, change: float, output: str) -> float | None:
+        """Derivative of an output after a relative change of the parameter; None without equilibrium or output."""
+        if (name, change) not in self._neighbours:
+            self._neighbours[name, change] = self._moved(name, change)
+        neighbour = self._neighbours[name, change]
+        if neighbour is None or neighbour.output(output) is None:
+            return None
+        return neighbour.derivative(output, name)
+
+    def _moved(self, name: str, change: float) -> CarveDerivatives | None:
+        """The derivatives at a neighbouring equilibrium, with the parameter changed; None if it is not found."""
+        request, direction = self.request, self._parameter_derivatives(name)
+        given, model = request.conditions, request.model
+        numbers = zip(_IN_CONDITIONS, direction.numbers[_OF_CONDITIONS], strict=True)
+        given = given._replace(**{key: getattr(given, key) + change * float(growth) for key, growth in numbers})
+        if given.excess < 0.0 or given.edge_angle < 0.0:
+            return None
+        if name not in CONDITIONS:
+            model = clamped(varied_ski(model.ski, name, change), model.clamp_length, request.elements)
+        near = self.at.solution if model.size == request.model.size else None
+        solution = solved(model, given, near=near)
+        strength = None if request.strength is None else request.strength + change * direction.strength
+        if not solution.converged:
+            return None
+        return CarveDerivatives(CarveRequest(model, given, strength, solution, request.elements))
+
+>>>>>>> Stashed changes
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""
         growth = self._output(name)
@@ -190,7 +219,7 @@ class CarveDerivatives:
     def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
         """Derivatives of `force_at` by a parameter, per its unit; stations may move with it."""
         force, rising = self.at.solution.force_per_length[::-1], self._rising_stations
-        shape = self._direction(parameter).shape
+        shape = self._parameter_derivatives(parameter).shape
         out = np.interp(place, rising, self.force_growth(parameter)[::-1])
         if shape is None or not shape.moves:
             return out
@@ -257,7 +286,7 @@ class CarveDerivatives:
         growth, of_ski = gradient.output, tuple(name for name in names if name not in CONDITIONS)
         for row, name in enumerate(names):
             if name in CONDITIONS:
-                along = self._direction(name)
+                along = self._parameter_derivatives(name)
                 by_state = growth.edge_angle * along.numbers[_ANGLE] + growth.load * along.numbers[_LOAD]
                 out[row] = gradient.numbers @ along.numbers + growth.strength * along.strength + by_state
         if of_ski:
@@ -282,7 +311,7 @@ class CarveDerivatives:
 
     def _growth(self, name: str) -> tuple[FloatArray, tuple[float, float, float], FloatArray, FloatArray, float]:
         """Derivatives by a parameter of unknowns, boot depth, slope and shear, edge depth, force; and kink distance."""
-        direction, model = self._direction(name), self.request.model
+        direction, model = self._parameter_derivatives(name), self.request.model
         bent = np.zeros(model.size)
         if direction.shape is not None:
             bent = bent_by(model, self.at.solution.u, direction.shape)
@@ -291,10 +320,10 @@ class CarveDerivatives:
     def _kink_distance(self, name: str) -> float:
         return math.inf if name == "snow.S_f_N_per_mm2" else self._growth(name)[4]
 
-    def _direction(self, name: str) -> _ParameterDerivatives:
+    def _parameter_derivatives(self, name: str) -> _ParameterDerivatives:
         if name not in self._directions:
             if name in CONDITIONS:
-                self._directions[name] = self._direction_of_condition(name)
+                self._directions[name] = self._condition_derivatives(name)
             else:
                 request = self.request
                 shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
@@ -303,7 +332,7 @@ class CarveDerivatives:
                 self._directions[name] = _ParameterDerivatives(numbers, 0.0, shape)
         return self._directions[name]
 
-    def _direction_of_condition(self, name: str) -> _ParameterDerivatives:
+    def _condition_derivatives(self, name: str) -> _ParameterDerivatives:
         conditions, numbers, strength = self.request.conditions, np.zeros(_COUNT), 0.0
         turns = conditions.side_force > 0.0
         if name == "edge_angle_deg":

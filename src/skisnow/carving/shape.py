@@ -54,7 +54,7 @@ class Shape:
     stiffens: bool
 
 
-class _Lines(NamedTuple):
+class _Interpolation(NamedTuple):
     """Linear interpolation between the rows of a ski's tables at some places; `ends`: indices of both rows of each."""
 
     row: IntArray
@@ -84,35 +84,35 @@ class _Lines(NamedTuple):
         return np.asarray(np.sum(by_value * (table[:, self.row + 1] - table[:, self.row]), axis=0) / self.spacing)
 
 
-class _NodesAndLines(NamedTuple):
+class _NodesAndInterpolation(NamedTuple):
     node: FloatArray
-    stations: _Lines
-    gauss: _Lines
+    stations: _Interpolation
+    gauss: _Interpolation
 
 
 @functools.lru_cache(maxsize=16)
-def _mesh(station: bytes, clamp_length: float, elements: int) -> _NodesAndLines:
+def _mesh(station: bytes, clamp_length: float, elements: int) -> _NodesAndInterpolation:
     """Nodes of the beam, and interpolation of tables at these stations to its stations and Gauss points."""
     rows = np.frombuffer(station)
     node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
-    return _NodesAndLines(
+    return _NodesAndInterpolation(
         node,
-        _table_lines(station, element_places(node, STATION_POINTS).ravel()),
-        _table_lines(station, element_places(node, GAUSS_POINTS).ravel()),
+        _interpolation(station, element_places(node, STATION_POINTS).ravel()),
+        _interpolation(station, element_places(node, GAUSS_POINTS).ravel()),
     )
 
 
-def _table_lines(station: bytes, place: FloatArray) -> _Lines:
+def _interpolation(station: bytes, place: FloatArray) -> _Interpolation:
     """Interpolation at places (m) in a table with these stations (bytes of floats, falling)."""
     rows = np.frombuffer(station)
     row = np.clip(np.searchsorted(-rows, -place, side="right") - 1, 0, len(rows) - 2)
     spacing, pair = rows[row] - rows[row + 1], np.concatenate([row, row + 1])
-    return _Lines(row, (rows[row] - place) / spacing, spacing, np.concatenate([pair, pair + len(rows)]))
+    return _Interpolation(row, (rows[row] - place) / spacing, spacing, np.concatenate([pair, pair + len(rows)]))
 
 
 @functools.lru_cache(maxsize=16)
-def _lines_at(station: bytes, place: tuple[float, ...]) -> _Lines:
-    return _table_lines(station, np.array(place))
+def _interpolation_at(station: bytes, place: tuple[float, ...]) -> _Interpolation:
+    return _interpolation(station, np.array(place))
 
 
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
@@ -187,7 +187,7 @@ class ShapeGradient:
         out[1:3] = mesh.stations.to_rows(self._sections(model, elements), rows)
         out[3:] = mesh.gauss.to_rows(self.stiffness.reshape(2, -1), rows)
         if len(self.edge):
-            out[1:3] += _lines_at(station, tuple(self.edge.tolist())).to_rows(self.by_edge[:2], rows)
+            out[1:3] += _interpolation_at(station, tuple(self.edge.tolist())).to_rows(self.by_edge[:2], rows)
         return out
 
     def _sections(self, model: ClampedSki, elements: int) -> FloatArray:
@@ -203,7 +203,7 @@ class ShapeGradient:
             np.array([ski.width, ski.base_height]),
             np.array([ski.bending_stiffness, ski.torsional_stiffness]),
         )
-        lines = mesh.stations, mesh.gauss, _lines_at(ski.station.tobytes(), tuple(self.edge.tolist()))
+        lines = mesh.stations, mesh.gauss, _interpolation_at(ski.station.tobytes(), tuple(self.edge.tolist()))
         by_line = [
             lines[0].by_station(shape, self._sections(model, elements)),
             lines[1].by_station(stiffness, self.stiffness.reshape(2, -1)),
@@ -229,7 +229,7 @@ class ShapeGradient:
     def _add_edge(self, model: ClampedSki, u: FloatArray, node: FloatArray) -> None:
         """Add the derivatives by the nodes that deflection and twist at fixed places give, for the same unknowns."""
         element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
-        value, length = _by_node(model, u)[element], _element_lengths(model)[element]
+        value, length = _by_element(model, u)[element], _element_lengths(model)[element]
         local, (by_deflection, by_twist) = (model.node[element] - self.edge) / length, self.by_edge[2:]
         slope = np.sum(slope_shape(local, length) * value, axis=1)
         forward = by_deflection * slope + by_twist * (value[:, 5] - value[:, 2]) / length
@@ -244,7 +244,7 @@ def _by_stretch(model: ClampedSki, stiffness: FloatArray, u: FloatArray, adjoint
     length, curvature = _curvature(model)
     falls = -np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
     (own, turn), (back, turn_back) = (curvature_and_turn(model, unknowns) for unknowns in (u, adjoint))
-    own_falls, back_falls = (np.einsum("ngi,ni->ng", falls, _by_node(model, unknowns)) for unknowns in (u, adjoint))
+    own_falls, back_falls = (np.einsum("ngi,ni->ng", falls, _by_element(model, unknowns)) for unknowns in (u, adjoint))
     moment = stiffness[0] * ((own_falls + own) * back + own * back_falls) - stiffness[1] * turn * turn_back
     return np.asarray(moment @ GAUSS_WEIGHTS * length)
 
@@ -267,7 +267,7 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
     if not (lengthens or growth.stiffens):
         return out
     bending, torsion = growth.stiffness
-    value, (length, curvature) = _by_node(model, u), _curvature(model)
+    value, (length, curvature) = _by_element(model, u), _curvature(model)
     kappa, turn = curvature_and_turn(model, u)
     weight = GAUSS_WEIGHTS * length[:, None]
     force = np.einsum("ng,ngi->ni", weight * bending * kappa, curvature)
@@ -289,7 +289,7 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
 
 def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Curvature at the Gauss points (n, 4) and rate of twist of the elements (n, 1) for unknowns of the beam."""
-    value, (length, curvature) = _by_node(model, u), _curvature(model)
+    value, (length, curvature) = _by_element(model, u), _curvature(model)
     return np.einsum("ngi,ni->ng", curvature, value), (value[:, 5:] - value[:, 2:3]) / length[:, None]
 
 
@@ -328,11 +328,11 @@ def growth_by_tables(
         out[:, which] += by @ lines.along(table).T
         for row, (place, by_edge) in enumerate(edges if number < 3 else ()):
             if len(place):
-                out[row, which] += _lines_at(station, tuple(place.tolist())).along(table) @ by_edge[number - 1]
+                out[row, which] += _interpolation_at(station, tuple(place.tolist())).along(table) @ by_edge[number - 1]
     return out
 
 
-def _by_node(model: ClampedSki, u: FloatArray) -> FloatArray:
+def _by_element(model: ClampedSki, u: FloatArray) -> FloatArray:
     return np.append(u, 0.0)[model.dof]  # -1: held
 
 
