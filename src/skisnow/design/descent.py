@@ -31,7 +31,7 @@ _ROUNDING: Final = 1e-13
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Lines:
+class _LinearModel:
     """Linear model at a design z: deviations from targets, distances to limits; `growth`: their derivatives by z."""
 
     z: FloatArray
@@ -95,7 +95,7 @@ class Descent:
     def _share_of_gain(self, trial: FloatArray, value: float, gain: float, size: float) -> float:
         """Actual over predicted gain of a trial, which sets the trust region; -∞ without ski or equilibrium."""
         try:
-            share = (value - self._merit(self._values_of_lines(trial))) / gain
+            share = (value - self._merit(self._deviations_and_distances(trial))) / gain
         except SolverError:
             self.reach = size / 4.0
             return -np.inf
@@ -119,15 +119,15 @@ class Descent:
             z = z + moved
         return z
 
-    def _values_of_lines(self, z: FloatArray) -> FloatArray:
+    def _deviations_and_distances(self, z: FloatArray) -> FloatArray:
         search, (matrix, lowest) = self.search, self.search.linear
         values = [search.values(goal, z) for goal in (*search.targets, *search.limits)]
         return np.concatenate([*values, matrix @ z - lowest])
 
-    def _linearise(self, z: FloatArray) -> _Lines:
+    def _linearise(self, z: FloatArray) -> _LinearModel:
         search = self.search
         growths = [search.growth(goal, z) for goal in (*search.targets, *search.limits)]
-        return _Lines(z, self._values_of_lines(z), np.concatenate([*growths, search.linear[0]]))
+        return _LinearModel(z, self._deviations_and_distances(z), np.concatenate([*growths, search.linear[0]]))
 
     def _merit(self, *values: FloatArray) -> float:
         """Value to minimise: squared deviations plus weighted violation, the worst of several linear predictions."""
@@ -136,16 +136,16 @@ class Descent:
         rooms = np.min(values, axis=0)[self.rooms]
         return sum(squares) - self.weight * min(0.0, float(np.min(rooms, initial=0.0)))
 
-    def _cut(self, here: _Lines, beside: _Lines) -> _Lines:
+    def _cut(self, here: _LinearModel, beside: _LinearModel) -> _LinearModel:
         """Linear model of design `beside`, shifted so that it predicts nothing worse than the values of `here`."""
         values = beside.values + beside.growth @ (here.z - beside.z)
         for part in self.worst:
             largest = np.max(np.abs(here.values[part]))
             values[part] = np.clip(values[part], -largest, largest)
         values[self.rooms] = np.maximum(values[self.rooms], here.values[self.rooms])
-        return _Lines(here.z, values, beside.growth)
+        return _LinearModel(here.z, values, beside.growth)
 
-    def _step(self, lines: list[_Lines]) -> FloatArray:
+    def _step(self, lines: list[_LinearModel]) -> FloatArray:
         """Step (n,) that minimises the squares of the linear models, inside trust region and bounds.
 
         Unknowns: the step, a bound of each worst deviation, and the largest breach of a limit.
@@ -171,7 +171,7 @@ class Descent:
 
 
 def _ends(z: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest steps within reach and bounds."""
+    """Lowest and highest steps (n,) from z, inside the trust region and the bounds."""
     return np.maximum(-z, -reach), np.minimum(1.0 - z, reach)
 
 

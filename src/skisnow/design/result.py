@@ -35,7 +35,7 @@ CONFIRM: Final = Message(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Start:
-    """A start of the search: where it began and ended (variables from 0 to 1), its result, its equilibria."""
+    """A search from one start: begin and end (variables from 0 to 1; None: failed), result, number of equilibria."""
 
     begin: FloatArray
     end: FloatArray | None

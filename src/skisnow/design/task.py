@@ -66,12 +66,12 @@ class Goal:
 
     @property
     def wanted(self) -> float:
-        """The target or limit."""
+        """The value of the target or limit."""
         return self.target or self.at_most or self.at_least or 1.0
 
     @property
     def factors(self) -> FloatArray:
-        """Factors of it at the places; one without them."""
+        """Factors of the target or limit at the places; a single 1 without places."""
         return np.array(self.curve or (1.0,) * len(self.places_m or (0.0,)))
 
     @property
