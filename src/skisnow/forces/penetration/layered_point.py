@@ -84,7 +84,7 @@ class LayeredPoint(DeepeningPoint):
 
 @dataclass(frozen=True, slots=True)
 class ProfilePoint(DeepeningPoint):
-    """Snow in layers: from each top on, p of virgin snow grows by the layer's share of H_V with the depth.
+    """Snow in layers: from the top of a layer on, the pressure of virgin snow grows with its share of H_V.
 
     Attributes
     ----------

@@ -85,7 +85,7 @@ class _Hypoplastic(PointLaw):
             ).tag("out_of_range", kind=type(self).__name__, unloading_ratio=self.unloading_ratio)
 
     @property
-    def _hardness(self) -> float:
+    def _loading_stiffness(self) -> float:
         return self._factor * self.snow_hardness
 
     @property
@@ -100,7 +100,7 @@ class _Hypoplastic(PointLaw):
         risen = reached - depth
         # inf times 0 has no value; at the deepest depth itself nothing has been released
         released = np.multiply(self.unloading_ratio, risen, out=np.zeros(risen.shape), where=risen != 0)
-        result: FloatArray = self._hardness * np.maximum(reached - released, 0.0)
+        result: FloatArray = self._loading_stiffness * np.maximum(reached - released, 0.0)
         return result
 
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
@@ -109,11 +109,11 @@ class _Hypoplastic(PointLaw):
 
     def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stored_energy`: p²/(2 k_u)."""
-        return self.stress(depth, deepest) ** 2 / (2.0 * self.unloading_ratio * self._hardness)
+        return self.stress(depth, deepest) ** 2 / (2.0 * self.unloading_ratio * self._loading_stiffness)
 
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.lost_energy`: ½ H_V ε_max² (1 - H_V/k_u)."""
-        return 0.5 * self._hardness * np.asarray(deepest, float) ** 2 * self._kept
+        return 0.5 * self._loading_stiffness * np.asarray(deepest, float) ** 2 * self._kept
 
 
 @dataclass(frozen=True, slots=True)
