@@ -129,7 +129,7 @@ def _areas_between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple
 
 
 def _climb(smooth: FloatArray, low: int, high: int) -> tuple[int, int]:
-    """A lift without the waiting below and above: from the last point at the bottom to the first at the top."""
+    """First and last point of a lift, from the last at the bottom to the first at the top, without waiting times."""
     margin = _zone_margin(float(smooth[high] - smooth[low]))
     inside = smooth[low : high + 1]
     bottom = np.flatnonzero(inside <= smooth[low] + margin)

@@ -128,20 +128,20 @@ def read_nmea(data: bytes, name: str) -> Recording:
     epochs = _read_epochs(data, counts)
     fixed = [number for number, epoch in enumerate(epochs) if epoch.has_fix]
     if fixed:
-        counts["times before the first fix"] = sum(map(_is_placed, epochs[: fixed[0]]))
+        counts["times before the first fix"] = sum(map(_has_place, epochs[: fixed[0]]))
         epochs = epochs[fixed[0] :]
-    if not any(map(_is_placed, epochs)):
+    if not any(map(_has_place, epochs)):
         allowed = Message("sentences GGA, GNS, GLL or RMC with times, and with right checksums or none")
         action = Message("Switch these sentences on in the receiver, or copy the file again.")
         counted = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
         raise track_error("empty_file", name, allowed, action, value=counted)
     times, start = _times(epochs)
-    placed = [number for number, epoch in enumerate(epochs) if _is_placed(epoch)]
-    counts[NO_PLACE] = sum(not _is_placed(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)
+    placed = [number for number, epoch in enumerate(epochs) if _has_place(epoch)]
+    counts[NO_PLACE] = sum(not _has_place(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)
     return _make_recording(name, [epochs[number] for number in placed], times[placed], start, counts)
 
 
-def _is_placed(epoch: _Epoch) -> bool:
+def _has_place(epoch: _Epoch) -> bool:
     return any(kind in PLACES for _, kind in epoch.seen)
 
 
@@ -214,7 +214,7 @@ def _times(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
     seconds: list[float] = []
     before = epochs[0]
     for epoch in epochs:
-        trusted = epoch.has_fix or not _is_placed(epoch)
+        trusted = epoch.has_fix or not _has_place(epoch)
         falls = epoch.second_of_day < before.second_of_day - _HALF_A_DAY
         if not trusted:
             seconds.append((day + falls) * _DAY + epoch.second_of_day)

@@ -34,7 +34,7 @@ HEADER: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """The line that names the columns."""
+    """Header line of an RTKLIB solution: time scale, kind of coordinates, separator and names of the columns."""
 
     scale: str
     kind: str
