@@ -157,35 +157,6 @@ class CarveDerivatives:
             out.append(Sensitivity(output, name, of_output, value, growth, relative, kink))
         return tuple(out)
 
-<<<<<<< Updated upstream
-=======
-    def _beside(self, name: str, change: float, output: str) -> float | None:
-        """Derivative of an output after a relative change of the parameter; None without equilibrium or output."""
-        if (name, change) not in self._neighbours:
-            self._neighbours[name, change] = self._moved(name, change)
-        neighbour = self._neighbours[name, change]
-        if neighbour is None or neighbour.output(output) is None:
-            return None
-        return neighbour.derivative(output, name)
-
-    def _moved(self, name: str, change: float) -> CarveDerivatives | None:
-        """The derivatives at a neighbouring equilibrium, with the parameter changed; None if it is not found."""
-        request, direction = self.request, self._parameter_derivatives(name)
-        given, model = request.conditions, request.model
-        numbers = zip(_IN_CONDITIONS, direction.numbers[_OF_CONDITIONS], strict=True)
-        given = given._replace(**{key: getattr(given, key) + change * float(growth) for key, growth in numbers})
-        if given.excess < 0.0 or given.edge_angle < 0.0:
-            return None
-        if name not in CONDITIONS:
-            model = clamped(varied_ski(model.ski, name, change), model.clamp_length, request.elements)
-        near = self.at.solution if model.size == request.model.size else None
-        solution = solved(model, given, near=near)
-        strength = None if request.strength is None else request.strength + change * direction.strength
-        if not solution.converged:
-            return None
-        return CarveDerivatives(CarveRequest(model, given, strength, solution, request.elements))
-
->>>>>>> Stashed changes
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""
         growth = self._output(name)
