@@ -48,11 +48,11 @@ SHOWN_TABLES: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The user's choice of quality flags and tests to include in an analysis.
+    """The user's choice of the quality flags and tests that an analysis excludes.
 
     excluding: codes of the quality flags that exclude an experiment (default: those of the campaign).
     left_out: further excluded experiments by file and name.
-    difference: relative difference of two groups that the number of needed tests is for.
+    difference: relative difference of two groups for which the number of needed tests is computed.
     """
 
     excluding: frozenset[str] | None = None
@@ -62,7 +62,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class FigureImage:
-    """A figure with alternative text, caption as HTML, and address of its image; a ``wide`` one scrolls."""
+    """A drawn figure for a page: alternative text, caption as HTML, address of its image; a ``wide`` one scrolls."""
 
     name: str
     alt: str
@@ -73,12 +73,12 @@ class FigureImage:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
-    """Analysis of a campaign with a choice, its verdicts, and the report's key results and tables as HTML.
+    """Results of a campaign for one choice: analysis, verdicts, and the report's key results and tables as HTML.
 
     key_results, tables: by language, the tables also by name.
     figures: images by language, as many as are drawn so far; None for a figure without data.
-    drawing: held while a figure is drawn.
-    key: name of the analysis in the folder of reports.
+    drawing: lock that is held while a figure is drawn.
+    key: unique name of the folder of its reports.
     """
 
     analysis: Analysis
@@ -92,14 +92,14 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Sentence why there is no analysis, with a line for each error in the files."""
+    """Reason why a campaign cannot be analysed, with a line for each error in its files."""
 
     said: str
     errors: tuple[str, ...] = ()
 
 
 def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
-    """Analyse a campaign in memory."""
+    """Analyse a campaign in memory with a choice; returns its results, or the reason why there are none."""
     try:
         campaign = _select_data(campaign_of_files(files.contents, others=files.others), choice)
         analysis = analyse(campaign, difference=choice.difference)
@@ -133,7 +133,7 @@ def figure(analysis: Analysis, number: int, language: str) -> FigureImage | None
 
 
 def load_drawing() -> None:
-    """Do nothing: the call imports this module, and with it Matplotlib, in the worker process."""
+    """Import this module, and with it Matplotlib, in the worker process that calls this function."""
 
 
 def write_whole_report(analysis: Analysis, out: str, language: str) -> None:
@@ -142,7 +142,7 @@ def write_whole_report(analysis: Analysis, out: str, language: str) -> None:
 
 
 def choosable_flags() -> dict[str, str]:
-    """Codes of the quality flags that users can include or exclude, with their sentences."""
+    """Sentences of the quality flags that users can include or exclude, by code."""
     return {code: flag.sentence for code, flag in QUALITY_FLAGS.items() if code not in ALWAYS_EXCLUDE}
 
 
@@ -157,7 +157,7 @@ def _select_data(campaign: Campaign, choice: Choice) -> Campaign:
 
 
 def _cancel_left_out(tests: Any, file: str, choice: Choice) -> Any:
-    """Tests of which the excluded ones are cancelled with a reason, so that they stay in every table."""
+    """Copy of tests in which the excluded ones are cancelled with a reason, so that the tables still list them."""
     typed: PenetrationTests | ShearTests | None = tests
     if typed is None:
         return None
@@ -223,7 +223,7 @@ class AnalysisCache:
         self._opening = asyncio.Lock()
 
     def cached(self, kind: str, id_: str) -> CampaignSource | None:
-        """The campaign if it is in the cache and nothing was entered since.
+        """Cached state of a campaign (kind: entry or kept), None if it is not cached or changed since.
 
         Raises StoreError: the store has no such campaign.
         """
@@ -231,7 +231,7 @@ class AnalysisCache:
         return entry[1] if entry is not None and entry[0] == state else None
 
     async def subject(self, kind: str, id_: str) -> CampaignSource:
-        """The campaign in its current state. Raises StoreError: the store has no such campaign."""
+        """Current state of a campaign, from the cache or read now; errors as in `cached`."""
         async with self._opening:
             if (cached := self.cached(kind, id_)) is not None:
                 self._subjects.move_to_end((kind, id_))
@@ -247,7 +247,7 @@ class AnalysisCache:
             return source
 
     def _state(self, kind: str, id_: str) -> int:
-        """Number of entries, or of corrections of an imported campaign, whose files do not change."""
+        """Number that grows with each change: entries of an entered campaign, corrections of an imported one."""
         if kind != "entry":
             stored = self._lab.store.show(id_)
             return len(Journals(self._lab.store).corrections(stored.id))
@@ -259,7 +259,7 @@ class AnalysisCache:
         return counts[id_]
 
     async def figures(self, numbers: Numbers, language: str) -> AsyncIterator[FigureImage]:
-        """Figures in order, each as soon as it is drawn, also by another page."""
+        """Yield the figures in order, each as soon as it is drawn; those that another page drew are reused."""
         drawn = numbers.figures.setdefault(language, [])
         for number in range(N_FIGURES):
             async with numbers.drawing:

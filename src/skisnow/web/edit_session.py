@@ -44,11 +44,11 @@ TestKey: TypeAlias = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class QuickResults:
-    """Quick results of the tests of one site.
+    """Results of the tests of one site that are computed while the campaign is entered, by file and name of the test.
 
     experiments: rows of results.json. Density samples and drop-cone tests have none.
-    curves: readings and law of each penetration series.
-    flags: sentences of the quality flags, by code.
+    curves: readings and fitted law of each penetration series.
+    flags: sentences of the quality flags of each test, by code.
     """
 
     experiments: dict[TestKey, dict[str, Any]]
@@ -57,7 +57,7 @@ class QuickResults:
 
 
 class EditSession:
-    """Journal of a campaign for one page; entries of others are added by `refresh`."""
+    """Access of one page to the journal of an entered campaign; `refresh` reads the entries of other pages."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.id = id_
@@ -74,7 +74,7 @@ class EditSession:
 
     @property
     def described(self) -> CampaignFile:
-        """Contents of campaign.toml."""
+        """Contents of the campaign's campaign.toml."""
         problems: list[Problem] = []
         described = read_campaign_file(self.campaign.description, problems)
         assert described is not None  # it was read before it was written down
@@ -89,7 +89,7 @@ class EditSession:
         return []
 
     def refresh(self) -> None:
-        """Replay the entries since the last call."""
+        """Read the journal's entries since the last call and update the campaign."""
         new = self._written_since()
         if new or self._campaign is None:
             self._last = max((entry.sequence for entry in new), default=self._last)  # a sync can add older ones later
@@ -109,7 +109,7 @@ class EditSession:
         return self.campaign.test(file, name)
 
     def tests_of_site(self, site: str) -> list[ReplayedTest]:
-        """All tests at a site, and the snow data of the site."""
+        """All tests at a site, with its density samples and drop-cone tests."""
         return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells.get("site") == site]
 
     def quick_results(self, site: str) -> QuickResults:
@@ -167,7 +167,7 @@ OWN_SHEET: Final = Message(
 
 
 class CorrectionSession(EditSession):
-    """Corrections of an imported campaign for one page."""
+    """Access of one page to an imported campaign and the journal of its corrections."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.stored, self._files = lab.store.contents(id_, READ_FILES)

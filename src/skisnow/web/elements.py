@@ -35,7 +35,7 @@ FIRST: Final = "(event) => { if (event.detail < 2) emit(kept.once()); }"
 def field(
     label: str, value: str = "", *, numeric: bool = False, wide: bool = False, optional: bool = False
 ) -> ui.input:
-    """Text field with its label above it; the Enter key skips an optional one."""
+    """Add a text field with its label above it; the Enter key skips an `optional` one."""
     made = ui.input(said(label), value=value).props("outlined stack-label autocomplete=off")
     _show_symbols(made, label)
     made.classes("field wide" if wide else "field")
@@ -47,7 +47,7 @@ def field(
 
 
 def choice(label: str, options: Sequence[str] | Mapping[str, str], value: str | list[str] | None) -> ui.select:
-    """Menu with options as texts by value; several can be chosen if ``value`` is a list."""
+    """Add a menu with options as texts by value; several can be chosen if ``value`` is a list."""
     made = ui.select(option_texts(options), label=said(label), value=value, multiple=isinstance(value, list))
     _show_symbols(made, label)
     return made.props("outlined stack-label").classes("field")
@@ -67,7 +67,7 @@ def option_texts(options: Sequence[str] | Mapping[str, str]) -> dict[str, str]:
 
 
 def button(text: str, act: Callable[..., Any] | None, kind: str = "", *, once: bool = False) -> ui.button:
-    """Button; ``kind``: main or quiet; ``once``: a double click counts once."""
+    """Add a button that calls `act`; ``kind``: main or quiet; ``once``: a double click counts once."""
     made = ui.button(said(text), on_click=None if once else act, color=None).props("no-caps unelevated")
     if once:
         made.on("click", act, js_handler=FIRST)
@@ -75,7 +75,7 @@ def button(text: str, act: Callable[..., Any] | None, kind: str = "", *, once: b
 
 
 def link(text: str, address: str, kind: str = "") -> ui.link:
-    """Link with the size of a button."""
+    """Add a link with the size of a button."""
     return ui.link(said(text), address).classes(f"act {kind}".strip())
 
 
@@ -127,7 +127,7 @@ class StatusLine(ui.element):
 
 
 def named(element: AnyElement, name: str) -> AnyElement:
-    """Give an element a name for screen readers."""
+    """Set the name of an element for screen readers; returns the element."""
     element.props["aria-label"] = said(name, element.client)
     return element
 
@@ -148,14 +148,14 @@ def add_head(columns: Iterable[str]) -> None:
 
 
 def folded(words: str, *, is_open: bool = False) -> ui.element:
-    """Section that the reader can open, with its title; ``is_open`` at first."""
+    """Add a section with a title that the reader can open; ``is_open``: it is open at first."""
     with ui.element("details").props("open" if is_open else "") as made, ui.element("summary"):
         Words(words)
     return made
 
 
 def html_words(html: str) -> ui.html:
-    """HTML of the reports in the language of the page, in which text from users is escaped."""
+    """Add HTML of the reports as it is; text from users must already be escaped in it."""
     return ui.html(html, sanitize=False)
 
 
@@ -234,7 +234,7 @@ def heading(text: str, level: int = 2) -> None:
 
 
 def sentence(text: str, kind: str = "") -> ui.label:
-    """Add a paragraph; ``kind``: class of the style sheet (quiet, good, bad)."""
+    """Add a paragraph with a text; ``kind``: class of the style sheet (quiet, good, bad)."""
     return Words(text).classes(f"sentence {kind}".strip())
 
 

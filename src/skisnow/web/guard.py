@@ -81,7 +81,7 @@ def _ip_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | No
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Access rules: host that the server listens on, token (None: not required), maximum size of a body in bytes."""
+    """Access rules: host that the server listens on, token (None: not required), largest request body in bytes."""
 
     host: str
     token: str | None
@@ -109,14 +109,14 @@ class Access:
         return hmac.new((self.token or "").encode(), b"skisnow lab", "sha256").hexdigest()
 
     def has_access(self, headers: Headers) -> bool:
-        """True if the request has the cookie; compared in constant time."""
+        """True if the request has the cookie of the token, or if no token is required."""
         if self.token is None:
             return True
         cookie = cookie_parser(headers.get("cookie", "")).get(COOKIE)  # ignores cookies of other programs
         return cookie is not None and hmac.compare_digest(cookie.encode(), self.cookie.encode())
 
     def is_token(self, text: str) -> bool:
-        """True for the token; compared in constant time."""
+        """True if a text is the token; compared in constant time."""
         return self.token is not None and hmac.compare_digest(text.encode(), self.token.encode())
 
 
@@ -173,9 +173,9 @@ class Guard:
 
 
 def _add_headers(send: Send, scope: Scope) -> Send:
-    """Add the security headers to answers, and the status of `STATUS`; a stricter policy of a page stays.
+    """Wrap `send`: answers get the security headers that they lack, and the status that a page set under `STATUS`.
 
-    Without it the framework answers 500 for every page with an error.
+    Without that status the framework answers 500 for every page with an error.
     """
 
     async def sent(message: AsgiMessage) -> None:
@@ -190,7 +190,7 @@ def _add_headers(send: Send, scope: Scope) -> Send:
 
 
 def _limit_body(receive: Receive, most_bytes: int) -> Receive:
-    """Count the bytes of a body, and disconnect beyond the limit."""
+    """Wrap `receive`: the bytes of a request's body are counted, and the client is disconnected beyond the limit."""
     taken = 0
 
     async def received() -> AsgiMessage:

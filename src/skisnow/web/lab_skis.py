@@ -31,7 +31,7 @@ _NAME_LINE: Final = re.compile(r"(?m)^name\s*=.*$")
 
 
 class LabSkis:
-    """Saved skis, each a folder with a file and an optional table."""
+    """Skis of a lab: those of the catalogue, and saved ones, each a folder with a file and an optional table."""
 
     def __init__(self, runs: Path) -> None:
         self._folder = runs / FOLDER
@@ -110,7 +110,7 @@ class LabSkis:
 
 
 def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
-    """Ski of a file's text, with the warnings of the reader.
+    """Ski from the texts of its file and table, and the warnings of the reader as text.
 
     Raises ParameterError: as `read_ski`; or the text names another file than its table.
     """
@@ -124,7 +124,7 @@ def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
 
 
 def _read_in_folder(place: Path) -> tuple[Ski, str]:
-    """Ski of a file in a temporary folder, and warnings of the reader; messages do not name the folder."""
+    """Ski of the file in a temporary folder, and the reader's warnings as text, which do not name the folder."""
     folder = str(place.parent)
     try:
         ski, warned = with_range_warnings(lambda: read_ski(place))
@@ -189,7 +189,7 @@ OPTIONAL: Final = ("camber_mm",)
 
 
 class SkiTexts(NamedTuple):
-    """A ski that was read: name, and texts of its file and table."""
+    """A ski as texts: name, ski file, and its table ("" without one)."""
 
     name: str
     text: str

@@ -35,7 +35,7 @@ _FILE: Final = "track"
 
 @dataclass(frozen=True, slots=True)
 class Placing:
-    """Position of a track relative to a run.
+    """Placing of an uploaded track next to a run.
 
     called: name of the uploaded file.
     fall_line_azimuth_deg: compass direction of the fall line; None for a track in the axes of the slope, or if it is
@@ -132,7 +132,7 @@ class TrackFolders:
             raise cannot_write(place, error) from error
 
     def beside(self, name: str, replay: Replay, *, read: Callable[..., ReplayTrack] | None = None) -> ReplayTrack:
-        """A track in the axes of a run, read by a function (default: `track_on_slope` in this process).
+        """Read a track in the axes of a run, by the function `read` (default: `track_on_slope` in this process).
 
         Raises ParameterError: the lab has no such track, or it cannot be placed.
         """
@@ -142,7 +142,7 @@ class TrackFolders:
 
 
 def check_track(place: Path, placing: Placing) -> Placing:
-    """Placing of a track, with its axes, that can be drawn; errors as in `TrackFolders.keep`."""
+    """Placing of a track, checked to be drawable, with `is_geodetic` set. Errors as in `TrackFolders.keep`."""
     track = _read_named(place, placing)
     _require_few_points(track)
     placing = replace(placing, is_geodetic=track.axes == "east_north_up")
@@ -178,7 +178,7 @@ def _require_few_points(track: Track) -> None:
 
 
 def _limited(content: IO[bytes], most: int, sentence: str) -> bytes:
-    """Content of a file of at most so many bytes; otherwise an error with a sentence."""
+    """Read a file of at most `most` bytes; a larger one raises a ParameterError with the sentence."""
     data = content.read(most + 1)
     if len(data) > most:
         raise ParameterError(sentence).tag("too_large", most=most // 1_000_000)
@@ -211,7 +211,7 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
 
 
 def number_of(text: str, words: str) -> float | None:
-    """Number from a field; None for an empty field. Raises ParameterError: the text is not a number."""
+    """Number in the text of a field; None if it is empty. Raises ParameterError, with `words`: it is not a number."""
     return typed_number(words, text) if text.strip() else None
 
 
@@ -222,7 +222,7 @@ MOST_COURSES: Final = 200
 
 
 class LabCourses:
-    """Uploaded courses, each a file."""
+    """Courses of a lab: built-in and uploaded ones, each of which is a file."""
 
     def __init__(self, runs: Path) -> None:
         self._folder = runs / COURSES_FOLDER
@@ -237,7 +237,7 @@ class LabCourses:
         return [*course_names(), *self.kept()]
 
     def change(self, name: str) -> tuple[str, str]:
-        """Key and value of a scenario for this course. Raises ParameterError: the lab has no such course."""
+        """Key of a scenario and its value that select a course. Raises ParameterError: the lab has no such course."""
         if name in course_names():
             return "course.name", name
         if name not in self.kept():

@@ -41,11 +41,11 @@ LONGEST: Final = 200  # maximum length of a request key
 
 @dataclass(frozen=True, slots=True)
 class PageRequest:
-    """Data that the browser sends with an event.
+    """Data of lab.js that the browser sends with an event.
 
-    number: number of the request that the page waits for (default: it does not wait).
-    once: key of the request, equal if it is sent again.
-    text: text of the field, if it is sent along.
+    number: number of the request if the page waits for its outcome.
+    once: unique key of the request, which is the same if it is sent again.
+    text: text of the field, if it is also sent.
     """
 
     number: int | None = None
@@ -65,7 +65,7 @@ def current_request() -> PageRequest:
 
 
 def event_handler(act: Act) -> Callable[[GenericEventArguments], None]:
-    """Handler that runs an action and sends its outcome to the waiting browser.
+    """Event handler that runs an action once per request and sends its outcome to the waiting browser.
 
     act: action that returns False for a rejected input; the browser then keeps the typed text.
     """
@@ -101,17 +101,17 @@ def _parse_request(message: Any) -> PageRequest:
 
 
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
-    """Button whose action moves the focus; see `skisnow.web.elements.button`."""
+    """Add a button whose action moves the focus, so that the page waits for it; see `skisnow.web.elements.button`."""
     return button(text, None, kind).on("click", event_handler(act), js_handler=ASK)
 
 
 def row_button(text: str, act: Act) -> ui.button:
-    """Button that adds a row to a form and puts the focus on it; it stores nothing."""
+    """Add a button whose action adds a row to a form and puts the focus on it; it stores nothing."""
     return button(text, None, "adds").on("click", event_handler(act), js_handler=ASK_FOR_ROW)
 
 
 def redrawn_by(menu: ui.select) -> ui.element:
-    """Group of fields that depend on a menu; they are disabled from a choice until they are drawn again."""
+    """Add a group for fields that depend on a menu; they are disabled from a choice until they are drawn again."""
     client = ui.context.client
     menu.on("update:model-value", lambda: client.run_javascript("lab.drawn()"), js_handler=DRAW_ANEW)
     return ui.element("fieldset").classes("redrawn")
@@ -123,7 +123,7 @@ def go_on(address: str) -> None:
 
 
 def form(classes: str = "fields", *, sends: Act | None = None) -> ui.element:
-    """Group of fields; Enter moves to the next empty field, and from the last one runs ``sends``."""
+    """Add a group for fields; Enter moves to the next empty field, and from the last one runs ``sends``."""
     made = ui.element("div").classes(classes)
     if sends is None:
         return made.on("keydown.enter", js_handler=ONWARD)
@@ -144,27 +144,27 @@ def address(path: str, **parameters: str) -> str:
 
 
 def entry_address(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
-    """Address of the entry of a campaign, or of a table and test in it; ``head``: cells of a test without rows."""
+    """Address of the page for entry in a campaign, or of a table and test there; ``head``: cells of a new test."""
     return address(f"/enter/{id_}", table=table, test=test, **(head or {}))
 
 
 def correction_address(id_: str, *, table: str = "", test: str = "") -> str:
-    """Address of the correction of an imported campaign, or of a table and test in it."""
+    """Address of the page for corrections of an imported campaign, or of a table and test there."""
     return address(f"/correct/{id_}", table=table, test=test)
 
 
 def analysis(kind: str, id_: str) -> str:
-    """Address of the analysis of a campaign; kind: entry or kept."""
+    """Address of the page with the analysis of a campaign; kind: entry (entered) or kept (imported)."""
     return f"/analysis/{kind}/{id_}"
 
 
 def export(kind: str, id_: str) -> str:
-    """Address of a campaign's zip file."""
+    """Address of a campaign's zip file; kind: entry (entered) or kept (imported)."""
     return f"/export/{kind}/{id_}.zip"
 
 
 def plain_stem(called: str, otherwise: str) -> str:
-    """Name of a file without folder and suffix, in characters that are valid in names of folders on every system.
+    """Name of a file without folder and suffix, in characters that every system allows; `otherwise` if none is left.
 
     >>> plain_stem("Hang 3/Übungs lauf.gpx", "track"), plain_stem("雪.csv", "course")
     ('Ubungs-lauf', 'course')
@@ -175,19 +175,19 @@ def plain_stem(called: str, otherwise: str) -> str:
 
 
 def free_place(folder: Path, stem: str, suffix: str = "") -> Path:
-    """Place in a folder with this name, or with the first free number after it."""
+    """Path in a folder that does not exist yet: this name, or with the first free number after it."""
     places = (folder / f"{stem}{end}{suffix}" for end in ("", *(f"-{number}" for number in range(2, 1000))))
     return next(place for place in places if not place.exists())
 
 
 def newest_first(paths: Iterable[Path]) -> list[Path]:
-    """Paths in the order of their last change."""
+    """Paths sorted by the time of their last change, the newest first."""
     return sorted(paths, key=lambda path: -path.stat().st_mtime)
 
 
 @contextmanager
 def hidden_folder(parent: Path) -> Iterator[Path]:
-    """Folder in another one, which is made if needed, to fill and then to rename; removed unless it was renamed.
+    """Yield a new temporary folder in another one, to fill and then to rename; removed unless it was renamed.
 
     Raises OutputError: it cannot be made.
     """
@@ -203,7 +203,7 @@ def hidden_folder(parent: Path) -> Iterator[Path]:
 
 
 def required_id(text: str) -> str:
-    """Id of a campaign from an address. Raises StoreError: the text is not an id."""
+    """The text, an id of a campaign in an address, if it has the form of one. Raises StoreError: it has not."""
     if not _ID.fullmatch(text):
         raise StoreError("This address names no campaign; the list of campaigns names all.").tag("no_campaign")
     return text
@@ -254,19 +254,19 @@ def uploaded_files(form: FormData, key: str, missing: str) -> list[UploadFile]:
 
 
 def upload_form(address: str) -> ui.element:
-    """Form that is sent to an address."""
+    """Add a plain form for uploads that is sent to an address."""
     return ui.element("form").props(f'method=post action="{address}" enctype="multipart/form-data"')
 
 
 def file_input(key: str, label: str, id_: str, further: str = "") -> None:
-    """Field for files with its label; ``further`` properties of the field."""
+    """Add a field for files with its label to a plain form; ``further``: HTML attributes of the field."""
     with ui.element("div").classes("labelled"):
         _add_label(id_, label)
         ui.element("input").props(f"type=file id={id_} name={key} required {further}".rstrip())
 
 
 def text_input(key: str, label: str, id_: str, further: str = "") -> None:
-    """Field for a text with its label; ``further`` properties of the field."""
+    """Add a field for a text with its label to a plain form; ``further``: HTML attributes of the field."""
     with ui.element("div").classes("labelled"):
         _add_label(id_, label)
         ui.element("input").props(f"id={id_} name={key} {further}".rstrip()).classes("act plain")
@@ -278,7 +278,7 @@ def _add_label(id_: str, label: str) -> None:
 
 
 def submit_button(text: str, *, kind: str = "", address: str = "") -> None:
-    """Button that sends the form, to another ``address`` than the form's if it is given."""
+    """Add a button that sends a plain form (default of ``address``: that of the form)."""
     further = f' formaction="{address}"' if address else ""
     with ui.element("button").props(f"type=submit{further}").classes(f"act {kind}".strip()):
         Words(text)

@@ -38,10 +38,10 @@ _PAUSE_S: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A simulation: name of its folder, scenario, changed keys, time of the request (UTC), state.
+    """A job of the queue: name of its folder, scenario, changed keys, time of the request (UTC), state.
 
-    ``given``: inputs that were chosen by name, in words. ``language``: language of the report. ``title``: name for
-    people, which can be changed. ``points`` of a study.
+    ``said``: sentence on its end. ``given``: inputs that were chosen by name, in words. ``language``: language of the
+    report. ``title``: name that the user can change. ``points``: number of points of a study.
     """
 
     name: str
@@ -78,7 +78,7 @@ _PROGRESS: Final = (
 
 
 def progress_words(line: str) -> str:
-    """Line of progress of a command as a message, where it has numbers."""
+    """Message for a line of progress that a command printed; an unknown line is returned unchanged."""
     for pattern, text in _PROGRESS:
         if match := pattern.search(line):
             return Message(text, **{name: float(number) for name, number in match.groupdict().items()})
@@ -96,7 +96,7 @@ class FinishedRun:
 
     @property
     def outcome_in_words(self) -> str:
-        """The outcome without underscores."""
+        """Words of the outcome, which can be translated."""
         return outcome_words(self.outcome)
 
     @property
@@ -161,7 +161,7 @@ class Runs:
         return job
 
     def _numbered(self, words: str) -> str:
-        """Words with the next number among the titles that begin with them."""
+        """Title for a new job: the words with the first number that no other title has with them."""
         titles = {job.title for job in self.jobs()}
         return next(title for number in count(1) if (title := f"{words}, {number}") not in titles)
 
@@ -209,7 +209,7 @@ class Runs:
                 await asyncio.sleep(_PAUSE_S)
 
     def end(self) -> None:
-        """End the running process with the server; its job starts again next time."""
+        """Stop the queue and kill the running process as the server ends; the next server starts its job again."""
         self._ended = True
         if self._process is not None and self._process.returncode is None:
             self._process.kill()
@@ -250,7 +250,7 @@ class Runs:
         return last[-LAST_WORDS:]
 
     async def _ended_as(self, job: Job, last: str, *, cancelled: bool) -> Job:
-        """Job with its state after the end of its process, and a sentence about it in the language of its request."""
+        """Copy of a job after the end of its process, with its state and a sentence about it in the job's language."""
         summary = self.folder / job.name / "summary.json"
         with in_language(job.language):
             if not summary.is_file():
@@ -269,7 +269,7 @@ class Runs:
             return replace(job, state="done", said=str(sentence).strip())
 
     def _keep(self, job: Job) -> None:
-        """Store a job."""
+        """Write a job to job.json in its folder."""
         write_file(self.folder / job.name / JOB, json.dumps(asdict(job), ensure_ascii=False, indent=1))
 
 

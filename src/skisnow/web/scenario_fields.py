@@ -71,7 +71,7 @@ def _as_sentence(words: str) -> str:
 
 
 def typed_form(value: Any) -> str:
-    """A value as it is typed on the command line, rounded for a field.
+    """Text of a value as it is typed on the command line, with numbers rounded for a field.
 
     >>> typed_form([6.0, 8.0]), typed_form(True), typed_form(0.20669325758298024)
     ('[6, 8]', 'true', '0.206693')
@@ -86,7 +86,7 @@ def typed_form(value: Any) -> str:
 
 
 def with_point(text: str) -> str:
-    """A number with a decimal comma or a minus sign as on the command line; other texts unchanged."""
+    """Text of a typed number with a decimal point and a hyphen, as on the command line; other texts unchanged."""
     return plain_number(text) if _NUMBER.fullmatch(text) else text
 
 
@@ -112,7 +112,7 @@ class ScenarioField:
 
     @property
     def text(self) -> str:
-        """Current value as on the command line."""
+        """Current value as text, as on the command line."""
         value = self.element.value
         if isinstance(value, bool):
             return ON if value else OFF
@@ -143,7 +143,7 @@ class ScenarioField:
     """Origin of the first value, for messages."""
 
     def typed_value(self) -> object:
-        """Current value as in a file."""
+        """Current value, converted from its text as in a file, unchecked."""
         from ..scenario.keys import parse_change
 
         return parse_change(f"{self.key.name}={self.text}")[1]
@@ -179,9 +179,9 @@ ALL_SITES: Final = ""
 
 @dataclass(frozen=True, slots=True)
 class ChosenSnow:
-    """A snow that was chosen by name.
+    """A snow that was chosen by name: its properties, its name in words, and the inputs that select it.
 
-    keys: inputs of a carved turn that name it; those of a scenario begin with "snow.".
+    keys: inputs of a carved turn that select it; those of a scenario begin with "snow.".
     analysis: analysis of the campaign, None for a published snow.
     """
 
@@ -192,7 +192,7 @@ class ChosenSnow:
 
 
 class SnowChoice:
-    """Menu of snows; ``changed`` is called after a choice. ``numbers``: entry for the page's numbers."""
+    """Menu of snows; ``changed`` is called after a choice. ``numbers``: its entry for the numbers typed on the page."""
 
     def __init__(self, lab: Lab, numbers: tuple[str, str], changed: Callable[[], None]) -> None:
         self._lab, self._numbers, self._changed = lab, numbers[0], changed
@@ -210,7 +210,7 @@ class SnowChoice:
 
     @property
     def is_numbers(self) -> bool:
-        """True if the numbers on the page apply."""
+        """True if the snow is that of the numbers typed on the page."""
         return bool(self._menu.value == self._numbers)
 
     @property
@@ -295,7 +295,7 @@ class SnowChoice:
 
 
 def _campaigns(lab: Lab) -> dict[str, str]:
-    """Names of the campaigns of the lab by kind and id."""
+    """Names of the campaigns of the lab, by kind (entry or kept) and id, joined by "-"."""
     entered = {
         f"entry-{head.id}": EditSession(lab, head.id).described.name or head.id for head in Journals(lab.store).list()
     }
@@ -325,7 +325,7 @@ def campaign_snow(lab: Lab, key: str) -> Analysis:
 
 
 def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
-    """Text of results.json of a campaign, and in words the snow of a scenario whose changes can name the site.
+    """Bytes of results.json of a campaign, and its snow in words, of the site that the changes of a scenario name.
 
     Raises ParameterError: a value is not valid.
     """

@@ -164,7 +164,7 @@ def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | No
 
 
 def _adapters(host: str) -> Iterator[str]:
-    """Addresses of this machine without link-local ones, which need the name of an adapter."""
+    """Yield the host, or for all adapters the addresses of this machine without link-local ones."""
     for adapter in ifaddr.get_adapters():
         for ip in adapter.ips:
             if ip.is_IPv4:
@@ -174,7 +174,7 @@ def _adapters(host: str) -> Iterator[str]:
 
 
 def lines_for_others(addresses: list[str], *, secure: bool) -> Iterator[str]:
-    """Lines for other machines: further addresses, a code for a phone's camera, and whether data are encrypted."""
+    """Yield lines about the access from other machines: addresses, a QR code, and if the connection is encrypted."""
     yield from (f"also: {address}" for address in addresses[1:])
     drawn = io.StringIO()
     segno.make(addresses[0], error="m").terminal(drawn, compact=True, border=2)

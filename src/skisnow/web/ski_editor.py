@@ -40,7 +40,7 @@ ONE: Final = "1"
 
 
 class SkiEditor:
-    """Editor on the page; ``changed`` is awaited after each change."""
+    """Editor of a ski on a page; ``changed`` is awaited after each change."""
 
     def __init__(self, skis: LabSkis, name: str, changed: Callable[[], Awaitable[None]]) -> None:
         self._skis = skis
@@ -95,14 +95,14 @@ class SkiEditor:
         return SkiEditInput(*self._base, factors, dict(self._typed))
 
     def require_drawn(self) -> None:
-        """Reject an edit while the text of the file differs from the drawn one."""
+        """Raise a ParameterError if the text of the file was changed since it was last drawn."""
         if self._file_and_table_text() != self._base:
             raise ParameterError("the file below was changed since it was drawn; press Draw the file first").tag(
                 "file_changed"
             )
 
     async def begin(self, name: str) -> None:
-        """Load a ski of the lab."""
+        """Load a ski of the lab, by its name, into the editor."""
         text, table = self._skis.texts(name)
         self._text.set_value(text)
         self._csv.set_value(table)

@@ -28,7 +28,7 @@ MOST_POINTS: Final = 10_000  # maximum number of points of a study in the lab, w
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """Range of a varied input: ends, number of values, and whether the logarithms are evenly spaced."""
+    """Range of a varied input: ends, number n of values; `log`: True for evenly spaced logarithms."""
 
     low: float
     high: float
@@ -50,10 +50,10 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class StudyQuestion:
-    """Inputs of a study.
+    """Inputs of a study, from which its files are written.
 
-    of: `CARVE`, or the name of a scenario.
-    varied, fixed: ranges and values by key; a list of values varies, too.
+    of: subject of the study: `CARVE`, or the name of a scenario.
+    varied, fixed: ranges and values by key; a list among the values is varied, too.
     beside: contents of the files that fixed values name, by name.
     named: inputs that were chosen by name, in words.
     """
@@ -101,7 +101,7 @@ class StudyQuestion:
 
 @cache
 def study_keys(of: str) -> Mapping[str, Quantity]:
-    """Numbers among the inputs of a carved turn or of a scenario, which a study can vary, by name."""
+    """Inputs of a carved turn (`CARVE`) or of a scenario that are numbers, which a study can vary, by name."""
     from ..scenario.keys import SCENARIO_KEYS
 
     if of != CARVE:
@@ -153,7 +153,7 @@ _FIRST_RANGES: Final = {
 
 
 def first_range(key: Quantity) -> tuple[float, float] | None:
-    """First range of an input; from half to twice its default if it has one, within the allowed range.
+    """Initial range of an input's fields: a known one, or half to twice its default; None without either.
 
     >>> from skisnow.parameters import Quantity
     >>> first_range(Quantity("load_N", "")), first_range(Quantity("w_m", "", default=0.8, highest=1.0))
@@ -176,7 +176,7 @@ class AxisFields:
 
     place: name of the fields, such as "First input".
     keys: inputs that can vary, by name.
-    first: first input with its number of values (default: no input, which is then an option).
+    first: initial input and number of values; None: no input, which is then an option.
     changed: function that is called after each change.
     """
 

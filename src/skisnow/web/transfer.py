@@ -81,7 +81,7 @@ def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
 
 
 def files_in_memory(lab: Lab, kind: str, id_: str) -> FilesInMemory:
-    """Files of an entered campaign (kind ``entry``) as it is now, or of an imported one with its corrections."""
+    """Current files of an entered campaign (kind ``entry``), or of an imported one (kept) with its corrections."""
     if kind == "entry":
         texts = campaign_files(replay_journal(Journals(lab.store).entries(required_id(id_))))
         return FilesInMemory({name: text.encode("utf-8") for name, text in texts.items()})
@@ -102,13 +102,13 @@ ENDINGS: Final = (".xlsx", ".xlsm", ".csv", ".txt", ".tsv")
 
 
 def try_import(name: str, data: bytes, answers: Answers) -> tuple[Proposal, tuple[str, float] | None]:
-    """Proposal of an import, with name and H_V (N/mm³) of one series once it is complete."""
+    """Proposal of an import; with name and H_V (N/mm³) of one series if the proposal has no problems, else None."""
     proposal = propose(name, data, answers)
     return proposal, first_hardness(campaign_of_files(proposal.files)) if proposal.files else None
 
 
 class FileImports:
-    """Uploads that wait for their import, each in a folder of the lab."""
+    """Uploaded files that wait for their import as campaigns, each in a folder of the lab, and import templates."""
 
     def __init__(self, lab: Lab) -> None:
         self._lab = lab
@@ -145,7 +145,7 @@ class FileImports:
         return added
 
     def templates(self) -> dict[str, str]:
-        """Saved templates, then the campaigns with a template, the newest first: names by choice."""
+        """Names of the saved templates, then of imported campaigns, newest first, by their value in a menu."""
         stored = reversed(self._lab.store.list())
         campaigns = {
             campaign.id: campaign.name for campaign in stored if any(file.path == RECORD for file in campaign.files)

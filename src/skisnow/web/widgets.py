@@ -36,7 +36,7 @@ BEHIND: Final = 3  # style of lines in the background
 
 @dataclass(frozen=True, slots=True)
 class ChartLine:
-    """A line of a chart; None breaks the line.
+    """A line of a chart with values x and y; None breaks the line.
 
     ``style``: 0, 1 or 2, or `BEHIND`. ``points``: True for points instead of a line. ``name``: text of the legend
     (default: no entry).
@@ -50,11 +50,11 @@ class ChartLine:
 
 
 class LineChart(Element, component="line_chart.js"):
-    """A panel of lines over one quantity.
+    """A chart of lines over one quantity.
 
     x, y: labels of the axes with units.
     words: description for screen readers; the range of the values is added.
-    height: in pixels.
+    height: height in pixels.
     ends: texts at the left and right ends of the horizontal axis.
     """
 
@@ -122,7 +122,7 @@ def save_buttons(name: str) -> None:
 
 
 def _short(values: Sequence[float | None]) -> list[float | None]:
-    """Values rounded to a hundredth of a pixel, which is a third of the characters to send."""
+    """Values rounded to a hundredth of a pixel, and None for NaN and infinity, to send fewer characters."""
     sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
     if not sizes or max(sizes) == 0.0:
         return [None if value is None or not math.isfinite(value) else value for value in values]

@@ -64,7 +64,7 @@ _NAMES: Final = re.compile(
 
 
 def label(column: str, *, unit: str = "") -> str:
-    """Label of a column on a page; its cells may have another unit than the column (default: that of the column).
+    """Label of a column on a page; `unit`: unit of its cells (default: that of the column's name).
 
     >>> label("depth_mm"), label("depth_mm", unit="cm")
     ('Depth (mm)', 'Depth (cm)')
@@ -74,7 +74,7 @@ def label(column: str, *, unit: str = "") -> str:
 
 
 def in_words(message: str) -> str:
-    """A message of the library with labels instead of the names of columns and tables.
+    """Message with the labels of the pages instead of names of columns and tables.
 
     >>> in_words("the column depth_mm has no number")
     'the column Depth (mm) has no number'
@@ -83,7 +83,7 @@ def in_words(message: str) -> str:
 
 
 def reword(message: str, change: Callable[[str], str]) -> str:
-    """A message with changed text: in the fields of a `Message`, otherwise in the whole text.
+    """Copy of a message with a function applied to the texts of its fields; to all of it if it is a plain text.
 
     >>> reword(Message("{key} is missing", key="depth_mm"), str.upper)
     'DEPTH_MM is missing'
@@ -97,7 +97,7 @@ def reword(message: str, change: Callable[[str], str]) -> str:
 
 
 def replaced(message: str, words: Mapping[str, str]) -> str:
-    """A message in which words are replaced one after the other, as by `reword`.
+    """Copy of a message in which words are replaced, one after the other, where `reword` changes text.
 
     >>> replaced("mass_kg is 3", {"mass_kg": "Mass (kg)"})
     'Mass (kg) is 3'
@@ -120,7 +120,7 @@ def _change_text(value: object, change: Callable[[str], str]) -> object:
 
 
 def result_words(row: dict[str, Any]) -> str:
-    """H_V and k_u/H_V, or S_f and u_y, with their intervals, from a row of ``experiments`` in results.json."""
+    """Text with H_V and k_u/H_V, or S_f and u_y, and intervals, from a row of ``experiments`` in results.json."""
     if "H_V_N_per_mm3" in row:
         words = f"H_V = {estimate_words(row['H_V_N_per_mm3'], row['H_V_interval_N_per_mm3'], 'N/mm³')}"
         if not row["n_unloading"]:
@@ -133,7 +133,7 @@ def result_words(row: dict[str, Any]) -> str:
 
 
 def estimate_words(value: float | None, pair: list[float] | None, unit: str = "") -> str:
-    """A value with its interval."""
+    """Text of a value with its unit and 95 % interval; a note if one of them is None."""
     if value is None:
         return Message("not defined")
     words = f"{significant(value)} {unit}".strip()
@@ -143,7 +143,7 @@ def estimate_words(value: float | None, pair: list[float] | None, unit: str = ""
 
 
 def plain_number(text: str) -> str:
-    """A typed number with a decimal point and a hyphen as its sign, as it is stored.
+    """Text of a typed number with a decimal point and a hyphen as its sign, as it is stored.
 
     >>> plain_number(" −2,5")
     '-2.5'
@@ -152,7 +152,7 @@ def plain_number(text: str) -> str:
 
 
 def typed_number(what: str, text: str) -> float:
-    """A finite number with a decimal point or comma.
+    """Finite number in a typed text with a decimal point or comma.
 
     Raises ParameterError: the text is not a number; the message begins with `what`.
     """
@@ -173,9 +173,9 @@ _OF_PAGES: Final = WeakKeyDictionary[Client, str]()
 
 
 def language_asked(chosen: str | None, accepted: str) -> str:
-    """Code of an available language.
+    """Code of the language for a request: the chosen one, else the first accepted one, that skisnow has; else "en".
 
-    accepted: header Accept-Language of the browser, the preferred language first.
+    accepted: header Accept-Language of the browser.
 
     >>> language_asked(None, "fr-CH, de-AT;q=0.9, en;q=0.5"), language_asked("en", "de")
     ('de', 'en')
@@ -204,12 +204,12 @@ def language_of_request(request: Request) -> str:
 
 
 def said(text: str, client: Client | None = None) -> str:
-    """A message in the language of the page; other text is not translated."""
+    """Text of a message in the language of the page; other text is returned unchanged."""
     return text.text(language_of(client)) if isinstance(text, Message) else text
 
 
 def number_text(number: str, client: Client | None = None) -> str:
-    """A stored number with the signs of the language of the page; other text is unchanged.
+    """Text of a stored number with the signs of the language of the page; other text is unchanged.
 
     >>> number_text("-3.61"), number_text("2026-02-14")
     ('−3.61', '2026-02-14')

@@ -86,7 +86,7 @@ def ask_correction(
     show: Callable[[], object],
     leave: Callable[[], object],
 ) -> bool:
-    """Ask for the reason of changed cells of a row; True, also if none is changed.
+    """Ask for the reason of changed cells of a row, to store them as a correction; returns True, also without a change.
 
     changed: texts by the keys of the cells.
     show, leave: functions that are called after the correction is stored, or not made.
@@ -117,7 +117,7 @@ def ask_correction(
 
 
 def change_words(name: str, old: str, new: str) -> Message:
-    """The old and the new text of a cell or field."""
+    """Sentence with the old and the new text of a cell or field."""
     old_text, new_text = (number_text(text) or Message("nothing") for text in (old, new))
     return Message("{name}: {old} becomes {new}.", name=name, old=old_text, new=new_text)
 
@@ -257,7 +257,7 @@ class Attachments:
         self.show()
 
     def _test(self) -> str:
-        """Current test, otherwise the last one of the table; "" without a test."""
+        """Name of the current test, otherwise of the last one of the table; "" without a test."""
         name = self._current()
         if name and self._view.test(name).rows:
             return name

@@ -35,12 +35,12 @@ class Step(NamedTuple):
 
     @property
     def words(self) -> Message:
-        """The step in words."""
+        """Load and branch in words, such as "50 N on the way back"."""
         load = number_text(self.load)
         return Message("{load} N on the way back", load=load) if self.branch else Message("{load} N", load=load)
 
     def field_name(self, column: str) -> Message:
-        """Name of the field of the step's depth, by its column."""
+        """Name for screen readers of the step's field for a column of depths."""
         load = number_text(self.load)
         if column == AFTER:
             return Message("Depth after waiting under {load} N (mm)", load=load)
@@ -64,11 +64,11 @@ class ReadingField:
 
     @property
     def typed(self) -> str:
-        """The text in the field."""
+        """Stripped text in the field."""
         return str(self.depth.value or "").strip()
 
     def unstored(self, row: Reading | None) -> str | None:
-        """Unstored text that is kept when the field is drawn again; None if it is stored or another reading exists."""
+        """Unstored text, to be kept when the field is drawn again; None if it is stored or the reading is a new one."""
         drawn = str(self.row.props.get("data-stored") or "")
         is_kept = is_other(self.typed, drawn) and self.differs(row) and (bool(drawn) or row is None)
         return self.typed if is_kept else None
@@ -94,7 +94,7 @@ class ReadingField:
 def add_reading_field(
     step: Step, typed: str | None, stored: Callable[[], Reading | None], *, column: str = DEPTH, closed: bool
 ) -> ReadingField:
-    """Field of a depth with its state; lab.js shows the load in kg if the user says so.
+    """Add a field of a depth with its load and state; lab.js shows the load in kg if the user wants this.
 
     typed: text of the field (default: the stored depth).
     stored: function that returns the current reading.
@@ -116,12 +116,12 @@ def add_reading_field(
 
 
 def stored_depth(row: Reading | None, column: str = DEPTH) -> str:
-    """A depth of a reading (mm, as text); "" without one."""
+    """Stored depth of a reading in a column (mm, as text); "" without a reading or depth."""
     return "" if row is None else row.cells.get(column, "")
 
 
 def is_other(typed: str, stored: str) -> bool:
-    """True if a typed number has another text than the stored one, whichever decimal sign it has.
+    """True if a typed text differs from the stored one; the decimal sign of a number does not matter.
 
     >>> is_other("2,25", "2.25"), is_other("", "2.25"), is_other("A, left", "A, left")
     (False, True, False)
@@ -135,9 +135,9 @@ Field: TypeAlias = ui.input | ui.select
 def checked_fields(
     form: TableForm, fields: Mapping[str, Field], *, conversions: Mapping[str, UnitConversion] | None = None
 ) -> dict[str, str] | None:
-    """The cells of a row as they are typed, by column; None if one is rejected: its field then shows the problem.
+    """Checked texts of fields, by column, as the table stores them; None if one is rejected: its field shows why.
 
-    ``conversions`` from the units of fields to those of their columns (default: they are the same).
+    conversions: from the units of fields to those of their columns (default: they are the same).
     """
     cells: dict[str, str] = {}
     units = conversions or {}
@@ -223,7 +223,7 @@ def _reading_words(record: Any) -> Message:
 
 
 def _stored(session: EditSession, record: Any, once: str) -> str:
-    """Store a reading; returns the name of its series."""
+    """Store a reading that the browser kept, with its key; returns the name of its series."""
     said = _sent_cells(record)
     if not once or not said:
         raise ParameterError("this is not a reading").tag("not_a_reading")

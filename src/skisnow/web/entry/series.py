@@ -25,7 +25,7 @@ ON_BLUR: Final = "(event) => lab.leaving(event, emit)"
 
 
 class SeriesForm:
-    """The form of one series at a time."""
+    """Form to enter a penetration series, one series at a time."""
 
     def __init__(self, view: TableView, entry_list: EntryList) -> None:
         self._view = view
@@ -85,7 +85,7 @@ class SeriesForm:
         self._list.show(self._shown)
 
     def show(self, name: str, head: dict[str, str] | None = None) -> None:
-        """Show a series with the focus on its next empty field; ``head``: cells of a new series."""
+        """Show a series with the focus on its next empty field; ``head``: cells of its site, tool and so on, if new."""
         test = self._view.test(name)
         if head is None:
             head = {column: test.rows[0].cells.get(column, "") for column in HEAD}
@@ -98,7 +98,7 @@ class SeriesForm:
             self._view.live_results.follow(name, head["site"], in_progress=self._is_in_progress(name))
 
     def _is_in_progress(self, name: str) -> bool:
-        """True for the last series of the table."""
+        """True if a series is the last one of the table, so that readings may still be missing."""
         return self._view.tests()[-1].name == name
 
     def _focus_next(self, test: ReplayedTest) -> None:
@@ -111,7 +111,7 @@ class SeriesForm:
             focus_button(self._then)
 
     def _draw(self, test: ReplayedTest) -> None:
-        """Draw the series; unstored texts stay in their fields."""
+        """Draw the fields of a series; unstored texts stay in their fields."""
         unstored = self._unstored() if self._shown == test.name else {}
         waiting = self._waiting.unstored if self._waiting is not None and self._shown == test.name else {}
         self._shown = test.name
@@ -148,7 +148,7 @@ class SeriesForm:
                 self._readings[step] = self._add_reading(test, step, unstored.get(step))
 
     def _unloading_fields(self, test: ReplayedTest, steps: list[Step], unstored: Mapping[Step, str]) -> None:
-        """Fields for the depths of unloading, folded without a reading."""
+        """Add fields for the depths of unloading, in a section that is closed without such a reading."""
         if not steps:
             return
         begun = any(test.row_under(*step) or step in unstored for step in steps)
@@ -162,7 +162,7 @@ class SeriesForm:
         return {step: text for step, text in texts.items() if text is not None}
 
     def _next(self) -> bool:
-        """Begin the next series if all typed texts are stored."""
+        """Show the form of the next series if all typed texts are stored; otherwise False, after a message."""
         missing = [step for step in self._unstored() if self._test.row_under(*step) is None]
         if missing:
             loads = [step.words for step in missing]
@@ -231,7 +231,7 @@ class SeriesForm:
             asking_button(Message("Store it"), done)
 
     def _entered(self, step: Step, *, left: bool = False) -> bool:
-        """Store a first depth, or ask for the reason of a changed one; ``left``: the focus is in another field."""
+        """Store a step's first depth, or ask why it changed; False if rejected. left: the field lost the focus."""
         test, made = self._test, self._readings[step]
         if (sent := current_request().text) is not None and sent != str(made.depth.value or "").strip():
             made.depth.set_value(sent)  # the typed text was lost on its way, and is sent again
@@ -249,7 +249,7 @@ class SeriesForm:
         return taken
 
     def _store(self, step: Step, made: ReadingField) -> bool:
-        """Store the first depth under a load and show its state."""
+        """Store the first depth under a load and show its state; True if it is stored."""
         stored = self._add(step, made.depth)
         row = self._test.row_under(*step)
         if stored and row is not None:
@@ -264,7 +264,7 @@ class SeriesForm:
         return stored
 
     def _add(self, load: ui.input | Step, depth: ui.input) -> bool:
-        """Store a reading; problems are shown at the field, whose text stays."""
+        """Store a reading; True if it is stored, otherwise the problem is shown at its field, whose text stays."""
         test = self._test
         fields = {"depth_mm": depth} if isinstance(load, Step) else {"load_N": load, "depth_mm": depth}
         cells = checked_fields(self._view.form, fields)

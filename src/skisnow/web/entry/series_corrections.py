@@ -18,11 +18,11 @@ from .table_view import CORRECTED, TableView
 
 
 class SeriesCorrections:
-    """Corrections of stored readings of a series, with one reason for all.
+    """Question for the reason of changed readings of a series, one reason for all, and storage of the corrections.
 
     view, readings: table, and fields of the shown series by step.
     redraw: function that draws the stored series; unstored texts stay in their fields.
-    column: column of the fields.
+    column: column of the depths in the fields.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class SeriesCorrections:
         self._asked: dict[Step, str] = {}
 
     def begin(self, name: str, place: ui.element) -> None:
-        """Set the series and the element for questions."""
+        """Set the name of the series and the element in which the question is shown."""
         self._name, self._place, self._asked = name, place, {}
 
     @property
@@ -43,13 +43,13 @@ class SeriesCorrections:
         return self._view.test(self._name)
 
     def _changed(self) -> dict[Step, ReadingField]:
-        """Fields of stored readings with another depth, by step."""
+        """Fields whose text differs from the stored depth of their reading, by step."""
         test = self._test
         rows = {step: test.row_under(*step) for step in self._readings}
         return {step: reading for step, reading in self._readings.items() if rows[step] and reading.differs(rows[step])}
 
     def is_unanswered(self) -> bool:
-        """True if a reading is changed and not confirmed; the question is asked again."""
+        """True if a reading is changed and not confirmed; the question is then shown again."""
         if not self._changed():
             return False
         if self.ask(focus=True):
@@ -64,7 +64,7 @@ class SeriesCorrections:
     def ask(self, *, focus: bool, is_said: bool = True) -> bool:
         """Ask for one reason for all changed readings; False if one of them is not a depth.
 
-        ``is_said``: the status line shows it, too.
+        is_said: True if the status line also shows the question or the problem.
         """
         changed = self._changed()
         cells = {
@@ -90,7 +90,7 @@ class SeriesCorrections:
         return True
 
     def store(self, depths: Mapping[Step, str], why: str, said: str = CORRECTED) -> bool:
-        """Store depths as corrections; False after the first rejected one."""
+        """Store depths as corrections with a reason; False after the first rejected one."""
         for step, depth in depths.items():
             test = self._test
             row = test.row_under(*step)
@@ -105,7 +105,7 @@ class SeriesCorrections:
         return is_stored
 
     def _leave(self) -> None:
-        """Put the stored depths back into their fields."""
+        """Discard the changes: put the stored depths back into their fields."""
         for step, reading in self._readings.items():
             row = self._test.row_under(*step)
             if row is not None and reading.differs(row):
@@ -114,7 +114,7 @@ class SeriesCorrections:
         self._redraw()
 
     def drop(self, step: Step) -> None:
-        """Remove a reading from the question if its stored depth was typed again."""
+        """Update the question after the stored depth of a step was typed again, so that it is no longer changed."""
         if step not in self._asked:
             return
         self._asked = {}
@@ -126,7 +126,7 @@ class SeriesCorrections:
 
 
 class DepthsAfterWaiting:
-    """Fields of the depths after waiting, one for each load of a series."""
+    """Fields for the depths that were read again after waiting, one for each load of a series."""
 
     def __init__(self, view: TableView, name: str, shown: Callable[[], object]) -> None:
         self._view = view
@@ -137,7 +137,7 @@ class DepthsAfterWaiting:
 
     @property
     def unstored(self) -> dict[Step, str]:
-        """Unstored texts by step."""
+        """Texts that differ from the stored depths, by step."""
         fields = self._fields.items()
         return {step: reading.typed for step, reading in fields if reading.differs(self._row(step))}
 
@@ -145,7 +145,7 @@ class DepthsAfterWaiting:
         return self._view.test(self._name).row_under(*step)
 
     def draw(self, steps: Sequence[Step], unstored: dict[Step, str], ask: ui.element) -> None:
-        """Draw the fields, folded without a depth."""
+        """Add the fields, in a section that is closed without a depth; `ask`: element for the question."""
         self._corrections.begin(self._name, ask)
         closed = bool(self._view.test(self._name).cancelled)
         is_open = any(stored_depth(self._row(step), AFTER) for step in steps) or bool(unstored)
@@ -164,7 +164,7 @@ class DepthsAfterWaiting:
         self._fields[next(iter(self.unstored))].depth.run_method("focus")
 
     def _store(self) -> bool:
-        """Store new depths, and ask for the reason of changed ones; False if nothing is stored or asked."""
+        """Store new depths, and ask for the reason of changed ones; False if a depth is rejected."""
         depths = self._valid_changes()
         if depths is None:
             return False

@@ -25,7 +25,7 @@ ONCE: Final = ("site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm
 
 
 class SingleForm:
-    """Form of one row, with the list of rows."""
+    """Form to enter or correct one row of a table, such as a shear test, with the list of rows."""
 
     def __init__(self, view: TableView, entry_list: EntryList) -> None:
         self._view = view
@@ -42,7 +42,7 @@ class SingleForm:
         self._correcting: tuple[ReplayedTest, Reading] | None = None
 
     def begin(self) -> None:
-        """Show the form of a new row, with texts that were typed before."""
+        """Show the form of a new row, with the texts that were typed before another row was shown."""
         self._draw(self._begun or self._prefilled_cells(), None)
 
     def _open_row(self, name: str = "", row: str = "") -> bool:
@@ -169,7 +169,7 @@ class SingleForm:
         return ""
 
     def _is_unanswered(self) -> bool:
-        """True if the shown row is changed and not confirmed; the question is asked again."""
+        """True if the shown row is changed and not confirmed; the question is then shown again."""
         if self._correcting is None:
             return False
         stored = self._correcting[1].cells

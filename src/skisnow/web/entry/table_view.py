@@ -29,7 +29,7 @@ CORRECTED: Final = Message("Corrected; the first reading is kept.")
 
 
 class TableView:
-    """One table on a page: stores entries about its tests, shows success or error, and live results.
+    """View of one table on a page: stores entries about its tests, shows their outcome and live results.
 
     form, below: names of the sections of the form and of the changes for screen readers.
     """
@@ -53,7 +53,7 @@ class TableView:
         self.changes_place.clear()
 
     def test(self, name: str) -> ReplayedTest:
-        """Rows and entries of a test, as the journal had them when this page last read it."""
+        """A test of the table by its name, as of the last reading of the journal; an empty one if there is none."""
         return self.session.test(self.file, name)
 
     def label(self, column: str) -> str:
@@ -62,7 +62,7 @@ class TableView:
 
     @property
     def writer(self) -> str:
-        """Name of the writer."""
+        """Name of the operator in the page's field, who writes the entries."""
         return str(self._who.value or "")
 
     def tests(self) -> list[ReplayedTest]:
@@ -70,12 +70,12 @@ class TableView:
         return self.session.campaign.of_file(self.file)
 
     def next_name(self) -> str:
-        """Next number after the largest one among the names."""
+        """Name for a new test: the number after the largest one among the names of the tests."""
         numbers = (natural_number(test.name) for test in self.tests())
         return str(max((number for number in numbers if number is not None), default=0) + 1)
 
     def add(self, test: ReplayedTest, cells: Mapping[str, str], *, position: int, said: str) -> bool:
-        """Store a row; True if it is stored, now or by an earlier request with the same key."""
+        """Store a new row of a test and show `said`; True if it is stored, now or by an earlier equal request."""
         once = current_request().once
         return self.write(self._make_entry("add", test, cells=cells, position=position, once=once), test.last, said)
 
@@ -88,7 +88,7 @@ class TableView:
     def correct(
         self, test: ReplayedTest, row: int, cells: Mapping[str, str], why: str, *, said: str = CORRECTED
     ) -> bool:
-        """Store a correction of a row, given by the sequence of its entry."""
+        """Store corrected cells of a row, given by its entry's sequence, with a reason; True if they are stored."""
         if not why.strip():
             self.say(Message("A correction needs a reason."), "bad")
             return False
@@ -96,7 +96,7 @@ class TableView:
         return self.write(entry, test.last, said)
 
     def cancel(self, test: ReplayedTest, why: str) -> bool:
-        """Store the cancellation of a test with its reason."""
+        """Store the cancellation of a test with its reason; True if it is stored."""
         if not why.strip():
             self.say(Message("A test is cancelled with a reason."), "bad")
             return False
@@ -104,7 +104,7 @@ class TableView:
         return self.write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
 
     def undo(self, test: ReplayedTest) -> bool:
-        """Store the undo of the last entry."""
+        """Store the undo of the last entry about a test; True if it is stored."""
         if test.undoable is None:
             self.say(Message("There is nothing to undo."), "bad")
             return False
@@ -135,7 +135,7 @@ MOST: Final = 40
 
 
 class EntryList:
-    """Tests of a table by site below the form: angle, result, flags, who and when; results are added as they come.
+    """List of the tests of a table by site, below the form: angle, result, flags, writer and time.
 
     A line of a penetration test is a link; one of another table is a row, which ``open_row`` shows by its entry.
     """
@@ -152,7 +152,7 @@ class EntryList:
             background_tasks.create(self._load(), name="list", context=self._place.client)
 
     async def _load(self) -> None:
-        """Compute the results of each site once."""
+        """Compute the results of each site and add them to the list."""
         for site in dict.fromkeys(test.rows[0].cells["site"] for test in self._shown_tests()):
             try:
                 results = await run.io_bound(self._view.session.quick_results, site)
@@ -163,7 +163,7 @@ class EntryList:
             self.take(results)
 
     def take(self, results: QuickResults) -> None:
-        """Add the results of a site."""
+        """Add the results of a site to the lines of its tests."""
         symbol, column = RESULTS.get(self._view.file, ("", ""))
         for (file, name), row in results.experiments.items():
             if file == self._view.file and column:
@@ -227,7 +227,7 @@ RESULTS: Final = {PENETRATION.file: ("H_V", "H_V_N_per_mm3"), SHEAR.file: ("S_f"
 
 
 def table_links(tables: Mapping[str, str], here: str, further: Mapping[Message, str]) -> None:
-    """Links to the tables, by file, and to further pages of the campaign, by name."""
+    """Add links to the tables (addresses by file) and to further pages of the campaign (addresses by name)."""
     with named(ui.element("nav").classes("tables"), Message("Kind of test")):
         for file, address in tables.items():
             made = ui.link(said(TABLES[file]), address)
@@ -238,7 +238,7 @@ def table_links(tables: Mapping[str, str], here: str, further: Mapping[Message, 
 
 
 def _writer_field(session: EditSession) -> ui.select | ui.input:
-    """Field of the writer: a menu of the campaign's observers, or a text field."""
+    """Add the field for the operator: a menu of the campaign's observers, or a text field."""
     observers = list(session.described.observers)
     with ui.element("div").classes("who") as place:
         made = choice(WHO, observers, observers[0]) if observers else field(WHO)
@@ -274,7 +274,7 @@ class LiveResults:
                 self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
 
     def follow(self, name: str, site: str, *, in_progress: bool = False) -> None:
-        """Show the results of a test; results for an older state are dropped.
+        """Compute and show the results of a test; results for an older state are dropped.
 
         name, site: name and site of the test.
         in_progress: True if readings are still missing: flags about missing readings are not shown.
@@ -330,7 +330,7 @@ class LiveResults:
 
 
 def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLine]:
-    """Lines with readings and law of a series, and of all other series of its site together."""
+    """Lines of a chart: readings and law of a series, and of all other series of its site together."""
     others = [curve for other, curve in curves.items() if other != key]
     own = [curves[key]] if key in curves else []
     for chosen, style in ((others, BEHIND), (own, 0)):
@@ -344,6 +344,6 @@ def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLi
 def _joined(
     pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]],
 ) -> tuple[list[float | None], list[float | None]]:
-    """All x and all y of several curves, one curve after the other."""
+    """All x and all y of several curves (x, y), one curve after the other."""
     x, y = zip(*pairs, strict=True)
     return list(chain.from_iterable(x)), list(chain.from_iterable(y))

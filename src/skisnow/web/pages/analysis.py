@@ -99,7 +99,7 @@ def _no_report(page: AnalysisView | None, request: Request) -> Response:
 
 
 async def _report(page: AnalysisView | None, worker: Worker, request: Request) -> Path | None:
-    """Folder with the report of a page's choice in its language, written at the first request; None without one."""
+    """Folder with the report for a page's choice and language, written if missing; None without an analysis."""
     if page is not None:
         await page.settled.wait()
     if page is None or page.subject is None or page.analysed is None:
@@ -146,11 +146,11 @@ DIFFERENCES: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)  # differences that the use
 
 
 class AnalysisView:
-    """Tables and figures on an open page that follow the choice.
+    """Tables and figures on an open page, which are computed again after each change of the choice.
 
-    kind, id, subject: the campaign, and its state when the page was opened if it is cached.
-    analysed, refused: result of the last choice, or the reason of its absence.
-    settled: set while these belong to the choice.
+    kind, id, subject: campaign, and its state when the page was opened if it is cached.
+    analysed, refused: result of the last choice, or the reason why there is none.
+    settled: event that is set while these belong to the current choice.
     """
 
     def __init__(self, analyses: AnalysisCache, kind: str, id_: str, subject: CampaignSource | None) -> None:

@@ -88,21 +88,21 @@ def add_page(lab: Lab) -> None:
 
 
 class CarveInputs(NamedTuple):
-    """Questions of `skisnow carve`, one for each ski, whose "ski" is a word or keys of a file; the chosen snow."""
+    """Questions for `skisnow carve`, one per ski (a name, or the keys of a ski file), and the chosen snow."""
 
     questions: list[dict[str, Any]]
     snow: ChosenSnow | None
 
 
 class Solver:
-    """Solver of carve questions, one at a time; it reads each ski once, and its slow imports are late."""
+    """Solver of carve questions, one at a time; it reads each ski once and imports slow modules at the first one."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._sources: Sources | None = None
 
     def answers(self, inputs: CarveInputs) -> list[dict[str, Any]] | str:
-        """JSON of `skisnow carve` for each question, or the message of an error."""
+        """Results as in the JSON of `skisnow carve` for each question, or the message of an error."""
         from ...carving.answer import answer_dict, answer_question
         from ...carving.question import carve_question
         from ...ski.ski_file import Sources
@@ -120,7 +120,7 @@ class Solver:
 
 
 def with_sources(inputs: CarveInputs, sources: Sources) -> list[dict[str, Any]]:
-    """Register a chosen snow and edited skis in the sources; returns questions that name each ski by a word."""
+    """Add a chosen snow and edited skis to the sources; returns the questions, which name each ski by a word."""
     snow = inputs.snow
     if snow is not None and snow.analysis is not None:
         sources.take_snow(snow.snow, results=RESULTS, site=snow.keys.get("site"))
@@ -157,16 +157,16 @@ class Slider:
         self._shown.set_text(f"{self._called}: {number_text(shown or value)}")
 
     def put(self, value: float, spec: str) -> None:
-        """Take a value between the stops, shown by ``spec``, and move to the nearest stop."""
+        """Set a value between the stops, shown in the format ``spec``, and move the slider to the nearest stop."""
         self._show(f"{value:.9g}", format(value, spec))
         nearest = min(range(len(self._stops)), key=lambda stop: abs(float(self._stops[stop]) - value))
         ui.run_javascript(f"getHtmlElement({self._made.id}).value = {nearest}")
 
 
 class CarvedTurn:
-    """Sliders and results; only the latest question waits while an answer is computed.
+    """Base of pages with sliders and results of a carved turn; while one is computed only the latest change waits.
 
-    A page adds its inputs, `add_status`, `add_facts` and `add_charts`, and says what is asked.
+    A page adds its inputs, calls `add_status`, `add_facts` and `add_charts`, and implements `asked`.
     """
 
     facts: ClassVar[Mapping[str, tuple[Message, str]]] = FACTS
@@ -197,15 +197,15 @@ class CarvedTurn:
                 self.sliders[key] = Slider(words, stops, start, self.ask)
 
     def add_status(self) -> None:
-        """Add the outcome in words."""
+        """Add the line with the outcome in words."""
         self._status = Words(COMPUTING).classes("status").props("role=status")
 
     def add_facts(self) -> None:
-        """Add the place of the table."""
+        """Add the element for the table of results."""
         self._facts = ui.element("div").classes("table")
 
     def add_charts(self) -> None:
-        """Add the charts."""
+        """Add the charts of quantities along the ski."""
         titles = {key: (PANELS[key], Message("{title} along the ski", title=PANELS[key])) for key in self.panels}
         self._charts = {key: LineChart(ALONG, *title, height=self.height, ends=ENDS) for key, title in titles.items()}
 
@@ -216,13 +216,13 @@ class CarvedTurn:
             save_buttons(name)
 
     def update_snow(self) -> None:
-        """Show the sliders that the snow leaves to the page, and ask."""
+        """Show only the sliders of snow numbers that the chosen snow does not give, and compute again."""
         for key, is_given in zip(OF_SNOW, (self.snow.gives_hardness, self.snow.gives_stress), strict=True):
             self.sliders[key].place.set_visibility(not is_given)
         self.ask()
 
     def inputs(self, skis: Iterable[Any], unloading_ratio: float) -> CarveInputs:
-        """A question for each ski, by its word or its keys, in the turn of the sliders on the chosen snow.
+        """Questions for skis, each a word or keys, in the turn that the sliders state on the chosen snow.
 
         Raises ParameterError: the chosen campaign gives no snow.
         """
@@ -236,7 +236,7 @@ class CarvedTurn:
         return CarveInputs([{"ski": ski, **turn} for ski in skis], snow)
 
     def ask(self) -> None:
-        """Request the answer for the current positions of the sliders."""
+        """Start to compute and show the results for the current inputs, unless a computation will include them."""
         self._waiting = True
         if not self._working:
             self._working = True
@@ -262,7 +262,7 @@ class CarvedTurn:
             self._working = False
 
     def _download(self, file: str) -> None:
-        """Hand the browser the curves of the answer that is shown, one row for each station of each ski."""
+        """Let the browser download the shown curves as CSV, one row for each station of each ski."""
         rows: list[Sequence[Any]] = [["ski", "station_m", *PANELS]]
         for answer in self._answers:
             columns = [answer[key] or [None] * len(answer["station_m"]) for key in PANELS]
@@ -298,12 +298,12 @@ class CarvedTurn:
             chart.show(lines, range_=_range(key, answers))
 
     def fact(self, key: str, answer: dict[str, Any]) -> float | None:
-        """A number of the table; None where it does not exist."""
+        """Number of an answer for a row of the table; None if it does not exist."""
         return answer[key]
 
 
 def _range(key: str, answers: list[dict[str, Any]]) -> tuple[float, float] | None:
-    """Range of the chart of depths, which grow downwards; the height above the snow is limited."""
+    """Range of a chart's vertical axis: for edge depths, which grow downwards, otherwise None for the default."""
     depths = [depth for answer in answers for depth in (answer[key] or ()) if depth is not None]
     return (1.1 * max(depths), -ABOVE_MM) if key == "edge_depth_mm" and depths else None
 

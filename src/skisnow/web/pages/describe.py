@@ -146,7 +146,7 @@ class DescriptionForm:
         self._plates = EntryRows(Message("Plates of the shear test"), "plate", values.get("plate", ()))
 
     def grow(self, state: Any) -> None:
-        """Add rows as in the browser's state, with their chosen shapes; unexpected values are ignored."""
+        """Add rows of tools and plates as many as the browser's state has, with their shapes; ignore invalid values."""
         fields = state if isinstance(state, dict) else {}
         rows, choices = (part if isinstance(part, dict) else {} for part in (fields.get("rows"), fields.get("choices")))
         for entries in (self._tools, self._plates):
@@ -170,7 +170,7 @@ class DescriptionForm:
 
 
 class EntryRows:
-    """Rows of tools or plates with name and lengths."""
+    """Rows of a form for tools or plates, each with name and lengths."""
 
     def __init__(self, title: str, kind: str, entries: Any) -> None:
         self.kind = kind
@@ -212,7 +212,7 @@ class EntryRows:
             _show_lengths(shape, lengths)
 
     def values(self) -> list[dict[str, Any]]:
-        """Entries with a name; lengths without a name are an error."""
+        """Values of the rows that have a name, by key; lengths without a name are an error."""
         entries = []
         for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():

@@ -60,7 +60,7 @@ def add_page(lab: Lab) -> None:
 
 
 def designed_keys(keys: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
-    """Keys of a ski file with the changes of `SHAPES`; the EI of the rows before the middle row has its own factor."""
+    """Keys of a ski file with changed widths and EI (`SHAPES`); EI of the rows before the middle has another factor."""
     before = len(keys["EI_N_m2"]) // 2
     stiffness = [
         float(value) * changes[STIFFNESS] * (changes[TIP] if row < before else 1.0)
@@ -71,7 +71,7 @@ def designed_keys(keys: Mapping[str, Any], changes: Mapping[str, float]) -> dict
 
 
 def designable_skis(skis: LabSkis) -> dict[str, Mapping[str, Any]]:
-    """Keys of the skis that are made of three widths and a list of stiffness, by name."""
+    """Keys of the ski files, by name, of skis that are described by three widths and a list of stiffness."""
     keys_by_name = {}
     for name in skis.names():
         try:
@@ -84,7 +84,7 @@ def designable_skis(skis: LabSkis) -> dict[str, Mapping[str, Any]]:
 
 
 def found_design(inputs: CarveInputs, target: float) -> Design:
-    """The ski of the first question with the sidecut and stiffness that make a radius (m)."""
+    """Search sidecut and stiffness of the ski in the first question for a target radius of the turn (m)."""
     from ...design.search import design_ski
     from ...design.task import design_task
     from ...ski.ski_file import Sources
@@ -166,7 +166,7 @@ class _DesignPage(CarvedTurn):
         return self.inputs([self._designed_keys(), *other], UNLOADING_RATIO)
 
     def fact(self, key: str, answer: dict[str, Any]) -> float | None:
-        """Greatest force, deflection at one place, or a number of the answer."""
+        """Number of an answer for a row of the table: largest force, deflection at one place, or a plain value."""
         if key == PEAK:
             return max(answer[PEAK]) if answer[PEAK] else None
         if key == BENT:

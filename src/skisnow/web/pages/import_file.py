@@ -103,7 +103,7 @@ class _ImportPage:
             button(Message("Save the answers as a template"), self._save_template, "small")
 
     async def draw(self) -> None:
-        """Propose again with the current answers, and show it."""
+        """Compute the proposal with the current answers, and show it."""
         name, data = self.imports.content(self.id_)
         try:
             tried = await run.io_bound(confined, BOUNDS, try_import, name, data, self.answers)
@@ -163,7 +163,7 @@ class _ImportPage:
                     button(Message("Use this"), lambda: self._answer(question.option, question.key, str(typed.value)))
 
     def _table(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
-        """Choices of a table: its kind, a column for each heading, and the units that are stated."""
+        """Add the choices for a table: a column for each heading, its site, and a folded section of `_layout`."""
         kind = table.form.name
         heading(Message("{place}: {table}", place=table.section.key, table=said(TABLES[table.form.file])), 3)
         options = {name: label(name) for name in table.form.known} | {NONE: LEFT_OUT}
@@ -183,7 +183,7 @@ class _ImportPage:
         )
 
     def _layout(self, table: ImportedTable, kind: str) -> None:
-        """Choices of a table that its file states: kind, row of the headings, units, and tool or plate."""
+        """Add choices that override a table in the file: kind, row of the headings, units, and tool or plate."""
         section = table.section
         kinds = {name: TABLES[f"{name}.csv"] for name in KINDS} | {NONE: LEFT_OUT}
         made = choice(Message("Kind of table"), kinds, kind)
@@ -203,7 +203,7 @@ class _ImportPage:
                 self._add_typed_answer(label(name), answer, name, "")
 
     def _add_typed_answer(self, words: str, text: str, option: str, key: str) -> None:
-        """Field whose text is the answer once it is left with another one."""
+        """Add a text field; when it is left with another text, this becomes the answer of an option for a key."""
         typed = field(words, text)
         typed.on("blur", lambda: self._answer(option, key, str(typed.value)) if typed.value != text else None)
 
@@ -213,7 +213,7 @@ class _ImportPage:
             await self._answer("table", f"{section.sheet.name}:{int(row)}", kind)
 
     def _site(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
-        """Site of a sheet whose tables have no column for it."""
+        """Add a field for the site of a sheet or table, if the table has no column for it."""
         sheet = table.section.sheet.name
         if any(column.column == "site" for column in table.columns) or not table.rows:
             return
@@ -260,7 +260,7 @@ def _with_unit(column: ColumnChoice) -> str:
 
 
 def _place_words(problem: Problem) -> str:
-    """Place of a question in the file, with the text there."""
+    """Place of a problem in the imported file, with the text there."""
     value = problem.value or ""
     if problem.row is None:
         return value
@@ -268,7 +268,7 @@ def _place_words(problem: Problem) -> str:
 
 
 def _question_words(question: Question) -> Message:
-    """A question in words; its key is that of the command's option."""
+    """Text of a question of an import."""
     key, option = question.key, question.option
     if option in {"column", "unit"}:
         kind, _, heading = key.partition(".")
@@ -284,13 +284,13 @@ def _choice_words(text: str) -> str:
 
 
 def _further_problems(proposal: Proposal) -> list[Problem]:
-    """Errors that no question of the proposal is about."""
+    """Errors of a proposal that belong to none of its questions."""
     asked_problems = [question.problem for question in proposal.questions]
     return [problem for problem in proposal.problems if problem not in asked_problems]
 
 
 def _show_rows(table: ImportedTable) -> None:
-    """First rows as they are stored."""
+    """Add a table with the first rows of an imported table as they are stored."""
     present = dict.fromkeys(name for row in table.rows[:_SHOWN_ROWS] for name in row.cells)
     numbers = number_columns(table.form)
     names = sorted(present, key=lambda name: name in {"time", *FROM_NOTES})  # measured numbers first
@@ -311,7 +311,7 @@ def _show_rows(table: ImportedTable) -> None:
 
 
 def _five_digits(number: str) -> str:
-    """A number that is short enough to read; the stored one keeps all its digits.
+    """Text of a number rounded to five digits, but without an exponent; the stored one keeps all its digits.
 
     >>> _five_digits("294.1995"), _five_digits("22.50"), _five_digits("1250000")
     ('294.2', '22.50', '1250000')

@@ -161,11 +161,11 @@ class _Form:
         self._show_numbers()
 
     def _typed(self) -> dict[str, str]:
-        """Visible values that differ from the scenario, by key."""
+        """Texts of the visible fields that differ from the scenario, by key."""
         return {name: field.text for name, field in self._fields.items() if field.is_changed and field.place.visible}
 
     def _changed(self) -> dict[str, str]:
-        """Changes of the scenario; if one number of the snow is changed, both are included."""
+        """Changed values by key; if one number of the snow is changed, both H_V and S_f are included."""
         typed = self._typed()
         if self._snow.is_numbers and not typed.keys().isdisjoint(OF_SNOW):
             typed = {name: self._fields[name].text for name in OF_SNOW if self._fields[name].text} | typed
@@ -229,7 +229,7 @@ class _Form:
         )
 
     def _add_course(self, course: str, changes: dict[str, str]) -> str:
-        """Add the course of a name to the changes; a skier steers by its gates by default. Returns a text."""
+        """Add a chosen course to the changes, with a skier who steers by its gates; returns its name in words."""
         key, word = self._courses.change(course)
         changes[key] = word
         if "skier.steers" in self._fields:
@@ -237,7 +237,7 @@ class _Form:
         return f"course: {course}"
 
     async def _results(self, analysis: Analysis, scenario: str, changes: dict[str, str]) -> tuple[bytes, str]:
-        """File of a campaign's results, and its snow in words; a typed S_f is added to the changes if it has none."""
+        """Bytes of a campaign's results.json, and its snow in words; adds a typed S_f to the changes if it has none."""
         if not self._snow.gives_stress:
             changes[OF_SNOW[1]] = self._fields[OF_SNOW[1]].text
         results = await run.io_bound(results_and_snow_words, analysis, scenario, changes)
@@ -302,7 +302,7 @@ def _course_form() -> None:
 
 
 def menu_with_default(names: Sequence[str]) -> dict[str, str]:
-    """Options of a menu; the first one leaves the scenario unchanged."""
+    """Options of a menu of names; the first further one leaves the scenario unchanged."""
     return {GIVEN: Message("as in the scenario"), **{name: name for name in names}}
 
 

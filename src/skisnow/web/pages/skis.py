@@ -59,7 +59,7 @@ def add_page(lab: Lab) -> None:
 
 
 def _others(names: Sequence[str]) -> dict[str, str]:
-    """Options of the ski to compare with."""
+    """Options of the menu of skis to compare with: nothing, the edited ski, and all names."""
     return {NOTHING: Message("nothing"), EDITED: Message("the edited ski"), **{name: name for name in names}}
 
 
