@@ -227,7 +227,7 @@ FIRST_POINTS: Final = "let time be counted from each track's first point, or fit
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """A clock for two tracks.
+    """Relation of the clocks of two tracks.
 
     ahead: time of the simulated track minus that of the measured one (s).
     origin: description of the zero of time.
