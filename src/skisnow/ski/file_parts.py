@@ -58,14 +58,14 @@ class FileValues:
         return self.file.parent / name if name else None
 
     def needed(self, key: str) -> float:
-        """Give a number in SI that the file must have."""
+        """The number in SI of a key that the file must have; ParameterError without it."""
         number: float | None = getattr(self.said, SKI_KEYS[key].field)
         if number is None:
             raise ParameterError("the key {key} is missing. Add it, in the unit that it names.").tag("missing", key=key)
         return number
 
     def numbers(self, key: str) -> FloatArray:
-        """Give a list of numbers in SI that the file must have."""
+        """The list of numbers in SI of a key that the file must have; ParameterError without it."""
         numbers = getattr(self.said, SKI_KEYS[key].field)
         if numbers is None:
             raise ParameterError("the key {key} is missing. Add a list such as {key} = [100, 440, 100].").tag(
