@@ -205,7 +205,7 @@ def _solve_batch(G: FloatArray, m: FloatArray) -> FloatArray:
 
 
 def _violation(G: FloatArray, m: FloatArray, x: FloatArray, support: tuple[int, ...]) -> FloatArray:
-    """Decrease of the objective per step of a coefficient that is zero in the support."""
+    """Largest decrease (B,) of the objective per unit of a coefficient that the support holds at 0; 0: none."""
     worst = np.zeros(m.shape[1])
     for j in set(range(len(m))) - set(support):
         gain = m[j].copy()

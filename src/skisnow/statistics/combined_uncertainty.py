@@ -87,7 +87,7 @@ def require_confidence(confidence: float) -> None:
 
 
 class RandomEffectsMean(NamedTuple):
-    """The mean μ, the ends of its 95 % interval (NaN for a single estimate) and τ."""
+    """Mean μ, ends of its 95 % interval (NaN for a single estimate), and `spread`: τ, the spread of the true values."""
 
     mean: float
     low: float
