@@ -69,7 +69,7 @@ class Study(Shown):
     out
         Where the table goes.
     subject
-        Subject of the study.
+        Model that computes the points.
     varied
         Names of the inputs that vary, in the order of the file: the last varies fastest.
     points
@@ -133,14 +133,14 @@ class Sample:
 
 
 def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
-    """Read a study.
+    """Read a study from its file, without computing it.
 
     Parameters
     ----------
     path
         STUDY.toml. Paths in it are relative to its folder.
     subject
-        Scenario of the study if the file names none.
+        Function that makes the study's model from its folder, if the file names no scenario.
 
     Returns
     -------
