@@ -57,7 +57,7 @@ class Conflict:
 
     @property
     def id(self) -> str:
-        """Identifier for a choice; it changes if one side changes."""
+        """Identifier by which the user chooses a side; it changes if one side gets another entry."""
         parts = (self.campaign, self.file, self.test, *(entry.uid for entry in self.entries))
         return sha256("\0".join(parts).encode()).hexdigest()[:_ID_DIGITS]
 
@@ -69,18 +69,18 @@ class Conflict:
         actions = {entry.action for entry in self.entries}
         if actions == {"correct"}:
             return not self.contested
-        counts = _counts(self.entries_here, self.uid_here), _counts(self.entries_there, self.uid_there)
-        return "add" not in actions and counts[0] == counts[1]
+        here, there = _entry_counts(self.entries_here, self.uid_here), _entry_counts(self.entries_there, self.uid_there)
+        return "add" not in actions and here == there
 
     @property
     def contested(self) -> list[tuple[str, str]]:
         """Cells that both sides corrected differently: uid of the row's entry, and column."""
-        here, there = _corrected(self.entries_here, self.uid_here), _corrected(self.entries_there, self.uid_there)
+        here, there = _new_cells(self.entries_here, self.uid_here), _new_cells(self.entries_there, self.uid_there)
         return sorted(cell for cell in here.keys() & there.keys() if here[cell] != there[cell])
 
     @property
     def kind(self) -> Kind:
-        """Kind of the conflict."""
+        """Kind of the conflict, a key of `_KINDS`."""
         actions = {entry.action for entry in self.entries}
         added = [any(entry.action == "add" for entry in side) for side in (self.entries_here, self.entries_there)]
         if self.file == DESCRIPTION:
@@ -95,7 +95,7 @@ class Conflict:
 
     @property
     def what(self) -> str:
-        """Kind of the conflict in words."""
+        """What contradicts in the two stores, in words."""
         return _KINDS[self.kind]
 
     @property
@@ -120,21 +120,21 @@ class Conflict:
         return [f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}" for entry, about in subjects]
 
     def __str__(self) -> str:
-        """The conflict in a few lines."""
+        """Text with id, campaign, test and kind of the conflict, and a line for each entry of both sides."""
         subject = f"{self.file}, {self.test}" if self.test else self.file
         lines = [f"{self.id}  {self.name} ({self.campaign}), {subject}: {self.what}"]
         lines += [f"    here: {line}" for line in self.here]
         return "\n".join([*lines, *(f"    there: {line}" for line in self.there)])
 
 
-def _counts(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> Counter[tuple[object, ...]]:
+def _entry_counts(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> Counter[tuple[object, ...]]:
     return Counter(
         (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why) for entry in entries
     )
 
 
 def open_conflicts(here: Connection, there: Connection, journal_id: str) -> Iterator[Conflict]:
-    """Tests about which the entries that only one store has contradict those that only the other has."""
+    """Conflicts of a journal: tests about which entries of only one store contradict those of only the other."""
     of_here, of_there = entry_index(here, journal_id), entry_index(there, journal_id)
     for subject in of_here.written_on_both(of_there):
         on_here, on_there = (_entries_about(store, journal_id, subject) for store in (here, there))
@@ -153,8 +153,8 @@ def open_conflicts(here: Connection, there: Connection, journal_id: str) -> Iter
             yield conflict
 
 
-def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict[tuple[str, str], str]:
-    """Last correction of each cell among the entries."""
+def _new_cells(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict[tuple[str, str], str]:
+    """Text of each corrected cell after the last correction, by uid of the row's entry and column."""
     return {
         (uids.get(entry.about or 0, ""), column): text
         for entry in entries
@@ -171,13 +171,13 @@ def _entry_words(entry: JournalEntry, about: JournalEntry | None) -> str:
     if entry.action == "undo":
         return f"took back: {_entry_words(about, None)}" if about is not None else "took an entry back"
     if entry.action == "correct":
-        return "corrected " + ", ".join(_cell(key, text, about) for key, text in entry.cells.items())
+        return "corrected " + ", ".join(_correction_words(key, text, about) for key, text in entry.cells.items())
     cells = ", ".join(f"{column} {text}" for column, text in entry.cells.items() if text and text != entry.test)
     return f"added row {(entry.position or 0) + 1}: {_shorten_text(cells)}"
 
 
-def _cell(key: str, text: str, about: JournalEntry | None) -> str:
-    """Correction of a cell in words, with the line of the file for a stored campaign."""
+def _correction_words(key: str, text: str, about: JournalEntry | None) -> str:
+    """Correction of a cell in words, with its line in the file (stored campaign) or its row in the test (in entry)."""
     if "/" in key:
         line, column = cell_of(key)
         return f"line {line}, {column} to {text!r}"
@@ -228,7 +228,7 @@ def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
 
 
 def entries_by_uid(connection: Connection, journal_id: str, uids: Iterable[str]) -> list[JournalEntry]:
-    """Entries in the order of their uids, with verified checksums."""
+    """Entries of a journal with these uids, sorted by uid. Raises StoreError: an entry is damaged."""
     wanted = sorted(uids)
     entries: list[JournalEntry] = []
     for first in range(0, len(wanted), _ENTRIES_PER_QUERY):
@@ -239,7 +239,7 @@ def entries_by_uid(connection: Connection, journal_id: str, uids: Iterable[str])
 
 
 def _entries_about(connection: Connection, journal_id: str, subject: Subject) -> list[JournalEntry]:
-    """Every entry about one test, in the order of their uids."""
+    """All entries about one test, sorted by uid. Raises StoreError: an entry is damaged."""
     columns = journal_entry.c
     of_subject = (columns.journal_id == journal_id, columns.file == subject[0], columns.test == subject[1])
     rows = connection.execute(select(journal_entry).where(*of_subject)).mappings()
@@ -247,7 +247,7 @@ def _entries_about(connection: Connection, journal_id: str, subject: Subject) ->
 
 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:
-    """Ids of the journals that can be compared: of campaigns in entry, or stored in both stores."""
+    """Sorted ids of the journals that can be compared: their campaign is stored in both stores, or in neither."""
     journals = {id_ for store in (here, there) for id_ in store.execute(select(journal.c.id)).scalars()}
     stored_here, stored_there = (set(store.execute(select(campaign.c.id)).scalars()) for store in (here, there))
     for id_ in sorted(journals):

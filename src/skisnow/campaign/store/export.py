@@ -65,7 +65,7 @@ class Position:
 
 
 def photo_entry(file: str, test: str, photo: str, *, who: str = "") -> NewEntry:
-    """Entry of a photo of a test; `photo` is a JPEG file in base64.
+    """Entry that attaches a photo to a test; `photo` is a JPEG file in base64.
 
     Raises ParameterError: it is not a JPEG file, or larger than `MOST_PHOTO_BYTES`.
     """
@@ -82,13 +82,13 @@ def photo_entry(file: str, test: str, photo: str, *, who: str = "") -> NewEntry:
 
 
 def photo_of(attachment: ReplayedTest) -> bytes:
-    """JPEG file of an attachment; empty for a position."""
+    """Bytes of the JPEG file of an attachment; empty for a position."""
     cells = attachment.rows[0].cells
     return base64.b64decode("".join(cells[name] for name in sorted(cells) if name.startswith("photo_")))
 
 
 def position_entry(file: str, test: str, position: Position, *, who: str = "") -> NewEntry:
-    """Entry of the position of a test."""
+    """Entry that attaches a position to a test."""
     cells = {name: f"{getattr(position, name):.10g}" for name in ("latitude_deg", "longitude_deg", "accuracy_m")}
     return _attachment_entry(file, test, cells, who)
 
@@ -102,7 +102,7 @@ def _attachment_entry(table: str, test: str, cells: dict[str, str], who: str) ->
 
 
 def attachments_of(campaign: ReplayedCampaign, file: str, test: str) -> list[ReplayedTest]:
-    """Photos and positions of a test that are not cancelled, in the order of entry."""
+    """Attachments (photos and positions) of a test that are not cancelled, in the order of entry."""
     return [
         entry
         for entry in campaign.of_file(ATTACHMENTS)
@@ -111,7 +111,7 @@ def attachments_of(campaign: ReplayedCampaign, file: str, test: str) -> list[Rep
 
 
 def attachment_files(campaign: ReplayedCampaign, before: bytes = b"") -> Iterator[tuple[str, bytes]]:
-    """Photos, and attachments.csv with their rows and those of positions after the rows of `before`."""
+    """Files of all photos, and attachments.csv: rows of the file `before`, then one for each photo and position."""
     rows: list[dict[str, str]] = []
     for number, attachment in enumerate(campaign.of_file(ATTACHMENTS), start=1):
         entered, cells = attachment.rows[0].entered, dict(attachment.rows[0].cells)
@@ -138,7 +138,7 @@ def rows_of_file(data: bytes, file: str, test: str) -> list[dict[str, str]]:
 
 
 def with_rows(before: bytes, file: str, columns: Sequence[str], rows: Iterable[Mapping[str, str]]) -> str:
-    """Text of a table: the rows of a file as they are with all their columns, then further ones.
+    """Text of a CSV file: the rows of the file `before` with all their columns, then `rows` with `columns`.
 
     Raises StoreError: the file cannot be read.
     """
@@ -160,7 +160,7 @@ def _parse_records(data: bytes, file: str) -> list[list[str]]:
 
 
 def exported_files(campaign: ReplayedCampaign) -> dict[str, bytes]:
-    """All files of a campaign in entry by path: tables, corrections, photos and positions."""
+    """Bytes of all files of a campaign in entry by path: description, tables, corrections, photos and positions."""
     files = {name: text.encode("utf-8") for name, text in campaign_files(campaign).items()}
     return files | dict(attachment_files(campaign))
 
@@ -217,7 +217,7 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
 
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:
-    """Corrections, test by test, in the order of the first correction of each test."""
+    """Corrected cells of entries about a stored campaign, test by test, in the order of their first corrections."""
     tests = [test for test in replay_journal(entries).tests.values() if test.rows and test.file != ATTACHMENTS]
     tests.sort(key=lambda test: min((entry.uid for entry in test.history if not entry.is_from_file), default=""))
     for test in tests:

@@ -34,7 +34,7 @@ Progress: TypeAlias = Callable[[int, int], object]
 
 
 def no_progress(done_bytes: int, total_bytes: int, /) -> None:
-    """Ignore the progress."""
+    """Do nothing: for callers who need no progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ FileState: TypeAlias = tuple[int, int]
 
 
 def manifest_sha256(files: Iterable[StoredFile]) -> str:
-    """SHA-256 of paths, sizes and contents of a campaign, independent of the order of the files.
+    """SHA-256 of paths, sizes and hashes of a campaign's files, independent of their order.
 
     The manifest is the line ``skisnow manifest 1`` and, sorted by the bytes of the path in UTF-8, for each file
     ``SHA256 SIZE PATH`` and a zero byte.
@@ -66,7 +66,7 @@ def manifest_sha256(files: Iterable[StoredFile]) -> str:
 
 
 def list_files(folder: Path) -> dict[str, FileState]:
-    """List every file below a folder, hidden ones too.
+    """States (size and time of change) of all files below a folder by path, also of hidden ones.
 
     Raises StoreError: links, pipes and the like (all are named), names that are not text, paths that cannot be
         exported.
@@ -96,14 +96,14 @@ def list_files(folder: Path) -> dict[str, FileState]:
 
 
 def read_chunks(file: Path, chunk_bytes: int) -> Iterator[bytes]:
-    """Read a file in pieces; all but the last are full."""
+    """Read a file in pieces of `chunk_bytes` bytes; the last can be shorter."""
     with file.open("rb") as stream:
         while piece := stream.read(chunk_bytes):
             yield piece
 
 
 def campaign_name(folder: Path) -> str:
-    """Name from campaign.toml or its sheets if they can be read, otherwise that of the folder."""
+    """Name from a folder's campaign.toml or its sheets if they can be read, otherwise that of the folder."""
     own = folder.resolve().name.encode(errors="replace").decode()
     try:
         name = toml_values(decode(_read_description(folder)).text).get("name")
@@ -159,7 +159,7 @@ def _printable(path: str) -> str:
 
 @contextmanager
 def new_folder(out: Path) -> Iterator[Path]:
-    """Temporary folder to fill, which is renamed to ``out`` after success.
+    """Yield a temporary folder to fill, which is renamed to ``out`` after success.
 
     Raises StoreError: ``out`` is there already and not an empty folder.
     Raises OSError: the disk is full, read-only and so on; nothing is left behind.
@@ -211,7 +211,7 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
 
 
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
-    """Bytes of a file with a verified SHA-256.
+    """Join pieces to the bytes of a file, and verify their SHA-256.
 
     Raises StoreError: bytes that do not have the stored SHA-256.
     """
@@ -224,7 +224,7 @@ def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Flush a folder's entries to the disk; Windows does this automatically."""
+    """Flush the names of a folder's files to the disk; Windows does this automatically."""
     if os.name == "nt" or not folder.is_dir():
         return
     handle = os.open(folder, os.O_RDONLY)

@@ -75,7 +75,7 @@ class Journals:
         return id_
 
     def list(self) -> tuple[JournalHead, ...]:
-        """Journals of all campaigns in entry, oldest first."""
+        """Summaries of the journals of all campaigns in entry, oldest first."""
         query = (
             select(
                 journal.c.id,
@@ -93,23 +93,23 @@ class Journals:
             return tuple(_journal_head(entered_name(connection, row[0]), *row) for row in rows)
 
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:
-        """Entries of a journal after a sequence, oldest first.
+        """Entries of a campaign in entry with a sequence above `after`, oldest first.
 
         The order is that of their uids, which is the same in all stores; without synchronisation it is the order of
         writing.
 
         Raises StoreError: the journal is unknown.
         """
-        return self._read(id, after, _ENTERED)
+        return self._entries_after(id, after, _ENTERED)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:
-        """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
+        """Entries about a campaign that is stored byte for byte, with a sequence above `after`, oldest first.
 
         Raises StoreError: the campaign is unknown.
         """
-        return self._read(id, after, _STORED)
+        return self._entries_after(id, after, _STORED)
 
-    def _read(self, id_: str, after: int, ids: Select[Any]) -> tuple[JournalEntry, ...]:
+    def _entries_after(self, id_: str, after: int, ids: Select[Any]) -> tuple[JournalEntry, ...]:
         with database_errors(self._path, "not_read"), reading(self._engine) as connection:
             _require_id(connection, ids, id_)
             query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
@@ -185,7 +185,7 @@ def _is_about_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
 
 
 def _earlier_entry(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
-    """Entry that was written when it was sent the first time, or None."""
+    """Entry of the store with the same ``once``: the writer sent the new one before; None without one."""
     if entry.once is None:
         return None
     query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
@@ -206,6 +206,7 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
 
 
 def _require_entry_of_test(connection: Connection, id_: str, entry: NewEntry) -> None:
+    """Raise a `StoreError` if the entry to correct or undo is not one about the same test."""
     if entry.about is None:
         return
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)

@@ -117,7 +117,7 @@ def entry_sha256(row: Mapping[str, object]) -> str:
 
 
 def as_bytes(value: object) -> bytes | None:
-    """Bytes of a value, as SQLite casts it to a BLOB."""
+    """UTF-8 of the text of a value, as SQLite casts it to a BLOB; bytes and None stay."""
     if value is None or isinstance(value, bytes):
         return value
     return str(value).encode(errors="surrogatepass")
@@ -133,7 +133,7 @@ def now() -> str:
 
 
 def next_sequence(connection: Connection) -> int:
-    """Sequence of the next entry."""
+    """Sequence of the next entry in the store."""
     query = select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)
     return int(connection.execute(query).scalar_one())
 
@@ -149,7 +149,7 @@ def uid_of_file(journal_id: str, file: str, test: str) -> str:
 
 
 def number_of_uid(uid: str) -> int:
-    """Sequence of an entry in the store where it was written."""
+    """Sequence that an entry with this uid got in the store where it was written; 0 for one from a file."""
     digits = uid[:NUMBER_DIGITS]
     return int(digits) if digits.isdecimal() else 0
 
@@ -157,7 +157,7 @@ def number_of_uid(uid: str) -> int:
 def write_entry(
     connection: Connection, journal_id: str, entry: NewEntry, *, at: str | None = None, uid: str | None = None
 ) -> JournalEntry:
-    """Write a new entry (default: at the current time, with a new uid)."""
+    """Write a new entry and return it; `at` and `uid`: its time and uid (default: now, and a new one)."""
     sequence = next_sequence(connection)
     uid = uid or f"{sequence:0{NUMBER_DIGITS}d}-{secrets.token_hex(_RANDOM_BYTES)}"
     plain = {name: getattr(entry, name) for name in SHARED_FIELDS}
@@ -167,7 +167,7 @@ def write_entry(
 
 
 def insert_entries(connection: Connection, journal_id: str, entries: Sequence[JournalEntry]) -> None:
-    """Write entries unchanged, with their checksums."""
+    """Write entries as rows with their checksums; times, uids and sequences stay."""
     rows: list[dict[str, Any]] = []
     for entry in entries:
         row = {name: getattr(entry, name) for name in (*SHARED_FIELDS, "sequence", "at", "uid")}

@@ -29,7 +29,7 @@ class Reading:
 
     @property
     def cells(self) -> dict[str, str]:
-        """Current cells."""
+        """Texts of the entry by column, with all corrections."""
         cells = dict(self.entered.cells)
         for correction in self.corrections:
             cells.update(correction.cells)
@@ -49,12 +49,12 @@ class ReplayedTest:
 
     @property
     def last(self) -> int:
-        """Sequence of the last entry about it, for `seen` of `Journals.append`."""
+        """Sequence of the last entry about the test, for `seen` of `Journals.append`; 0 without entries."""
         return max((entry.sequence for entry in self.history), default=0)
 
     @property
     def cancelled(self) -> str:
-        """Reason for its cancellation, or ``""``."""
+        """Reason why the test was cancelled, or ``""``."""
         return self.cancelling.why if self.cancelling is not None else ""
 
     @property
@@ -84,7 +84,7 @@ class ReplayedTest:
 
 @dataclass(slots=True)
 class ReplayedCampaign:
-    """Current state of a campaign in entry; ``tests`` by file and name, in the order of entry."""
+    """State of a campaign in entry, or of changes to a stored one; ``tests`` by file and name, in order of entry."""
 
     description: str = ""
     described: int = 0
@@ -100,7 +100,7 @@ class ReplayedCampaign:
 
 
 def replay_journal(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
-    """Replay a journal's entries, oldest first. Undone entries have no effect, but stay in the history.
+    """State of a campaign after a journal's entries, oldest first. Undone ones have no effect, but stay in `history`.
 
     before: state before these entries, which is not changed; only tests with new entries are replayed.
     """
@@ -132,12 +132,12 @@ def _replay_test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedT
                 rows[entry.about].corrections.append(entry)
             elif entry.action == "cancel":
                 test.cancelling = entry
-    test.rows.sort(key=_order)
+    test.rows.sort(key=_row_order)
     return test
 
 
-def _order(row: Reading) -> tuple[bool, float, int, int]:
-    """Sort key of a row: entered readings by rising load, then unloading by falling load; rows of a file stay."""
+def _row_order(row: Reading) -> tuple[bool, float, int, int]:
+    """Sort key: entered readings by rising load, then unloading by falling load; other rows by position."""
     position, load = row.entered.position, row.cells.get("load_N")
     if not load or position is None:
         return False, 0.0, position or 0, row.entered.sequence
@@ -155,12 +155,12 @@ def correction_of_cell(entry: JournalEntry, line: int, column: str, old: str, ne
 
 
 def correction_cells(correction: AppliedCorrection) -> tuple[str, ...]:
-    """Row of corrections.csv with `COLUMNS`."""
+    """Cells of a row of corrections.csv, in the order of `COLUMNS`."""
     return tuple(map(str, astuple(correction)))
 
 
 def guarded_csv(rows: Iterable[Sequence[str]]) -> str:
-    """CSV text whose cells are protected from being read as formulas."""
+    """CSV text of rows, whose cells are protected from being read as formulas by a spreadsheet."""
     return csv_text(map(protect_from_formulas, row) for row in rows)
 
 
@@ -168,12 +168,12 @@ _TIME = "time"
 
 
 def campaign_files(campaign: ReplayedCampaign) -> dict[str, str]:
-    """Text of each file of the campaign's folder, by name."""
+    """Text of each file of the campaign's folder by name, except photos and positions."""
     files = {DESCRIPTION: campaign.description}
     corrections: list[AppliedCorrection] = []
     for form, tests in _tests_by_table(campaign.tests.values()):
         columns = _table_columns(form, tests)
-        rows = [_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
+        rows = [_row_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
         files[form.file] = guarded_csv([columns, *rows])
         corrections.extend(_applied_corrections(tests))
     if corrections:
@@ -182,7 +182,7 @@ def campaign_files(campaign: ReplayedCampaign) -> dict[str, str]:
 
 
 def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> Campaign:
-    """Campaign as `read_campaign` reads it from the exported folder, but for the hashes of its files.
+    """Campaign as `read_campaign` reads it from the exported folder, without the hashes of its files.
 
     of: tests to include (default: all).
     Raises FieldDataError: as `read_campaign`.
@@ -193,14 +193,14 @@ def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
         columns = _table_columns(form, tests)
         if STATUS not in columns and any(test.cancelling for test in tests):
             columns.append(STATUS)
-        rows = [_cells(reading.entered.at, cells, columns) for test in tests for reading, cells in _readings(test)]
+        rows = [_row_cells(reading.entered.at, cells, columns) for test in tests for reading, cells in _readings(test)]
         tables[form.file] = Cells(tuple(columns), range(2, len(rows) + 2), rows)
         corrections.extend(_applied_corrections(tests))
     return campaign_of_cells(campaign.description, tables, tuple(corrections))
 
 
 def _tests_by_table(tests: Iterable[ReplayedTest]) -> Iterator[tuple[TableForm, list[ReplayedTest]]]:
-    """Tests of each table that has rows."""
+    """Each table that has rows, with its tests that have rows."""
     by_file: dict[str, list[ReplayedTest]] = {}
     for test in tests:
         if test.rows:
@@ -209,7 +209,7 @@ def _tests_by_table(tests: Iterable[ReplayedTest]) -> Iterator[tuple[TableForm, 
 
 
 def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]:
-    """Readings of a test with their current cells; the first states why the test was cancelled."""
+    """Readings of a test with their current cells; if it was cancelled, the first contains the reason."""
     for index, reading in enumerate(test.rows):
         cancelled = index == 0 and test.cancelling is not None
         yield reading, reading.cells | {STATUS: test.cancelled} if cancelled else reading.cells
@@ -222,8 +222,8 @@ def _table_columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:
     return [column for column in form.known if column in present or column in form.required]
 
 
-def _cells(at: str, cells: Mapping[str, str], columns: Sequence[str]) -> list[str]:
-    """Cells of a row in the order of the columns; the time of the entry where the cells have none."""
+def _row_cells(at: str, cells: Mapping[str, str], columns: Sequence[str]) -> list[str]:
+    """Cells of a row in the order of the columns; `at`: time of the entry, for a row without a time."""
     cells = {_TIME: at, **cells}
     return [cells.get(column, "") for column in columns]
 

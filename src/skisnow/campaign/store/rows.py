@@ -45,12 +45,12 @@ class StoredCampaign:
 
     @property
     def n_files(self) -> int:
-        """Number of files."""
+        """Number of its files."""
         return len(self.files)
 
     @property
     def n_bytes(self) -> int:
-        """Total size of the files in bytes."""
+        """Total size of its files in bytes."""
         return sum(file.size for file in self.files)
 
 
@@ -61,14 +61,14 @@ def campaign_rows(connection: Connection) -> dict[str, Row[tuple[object, ...]]]:
 
 
 def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
-    """Find the campaign by the beginning of its hash; errors as in `pick_id`."""
+    """Read the campaign whose SHA-256 has this beginning; errors as in `pick_id` and `stored_campaign`."""
     rows = campaign_rows(connection)
     sha256 = pick_id(beginning, {sha256: row.name for sha256, row in rows.items()})
     return stored_campaign(connection, rows[sha256])
 
 
 def pick_id(beginning: str, names: Mapping[str, object]) -> str:
-    """The id or hash with this beginning, from names by ids, oldest first.
+    """The only id or SHA-256 with this beginning; `names`: names of all campaigns by id or SHA-256, oldest first.
 
     Raises StoreError: not hexadecimal, fewer than 4 digits, unknown, or ambiguous; the message lists candidates.
     """
@@ -97,7 +97,7 @@ def pick_id(beginning: str, names: Mapping[str, object]) -> str:
 
 
 def damage_error(what: str) -> StoreError:
-    """Error for damaged rows."""
+    """Error that says what is damaged in the store, with a remedy."""
     return StoreError("{what} is damaged in the store; `skisnow store verify` lists all damage. Restore a backup.").tag(
         "damaged", what=what
     )
@@ -110,18 +110,18 @@ def entry_damage_error(number: object, journal_id: object) -> StoreError:
 
 
 def require_whole(stored: StoredCampaign) -> None:
-    """Check that a campaign's list of files is unchanged since it was added.
+    """Check that a campaign's list of files is unchanged since it was added; the stored bytes are not read.
 
-    Raises StoreError: a name, a size, a hash or a file differs.
+    Raises StoreError: a path, a size or a hash differs, or a file is missing.
     """
     if manifest_sha256(stored.files) != stored.sha256:
         raise damage_error(Message("The list of files of the campaign {id}", id=stored.id))
 
 
 def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
-    """Convert a row to a campaign.
+    """Convert a row to a campaign, with the list of its files.
 
-    Raises StoreError: the row or one of its files is damaged.
+    Raises StoreError: the row or that list is damaged.
     """
     try:
         rows = connection.execute(
@@ -154,7 +154,7 @@ def require_type(value: object, kind: type[T]) -> T:
 
 
 def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
-    """Pieces of a content's bytes."""
+    """Read the stored bytes of a file by their SHA-256, in pieces. Raises StoreError: a piece is damaged."""
     pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
     try:
         for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
@@ -164,7 +164,7 @@ def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
 
 
 def is_sound(connection: Connection, sha256: str, size: int) -> bool:
-    """True if a content has its hash and size (bytes)."""
+    """True if the bytes that are stored under a SHA-256 have it, and the size (bytes)."""
     digest, n_bytes = hashlib.sha256(), 0
     try:
         for piece in stored_chunks(connection, sha256):
@@ -176,7 +176,7 @@ def is_sound(connection: Connection, sha256: str, size: int) -> bool:
 
 
 def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
-    """Store the bytes of a file unless they are stored already; True if damaged ones were repaired.
+    """Store the bytes of a file unless they are stored already; True if stored but damaged bytes were replaced.
 
     Raises StoreError: the file changed since it was hashed.
     """
@@ -194,7 +194,7 @@ def store_content(connection: Connection, folder: Path, file: StoredFile) -> boo
 
 
 def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[bytes]) -> bool:
-    """Store the bytes of a file from another store unless they are stored; False if they are damaged."""
+    """Store the bytes of a file from another store unless they are stored; False if they lack the file's SHA-256."""
     held = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).first()
     if held is not None:
         return True
@@ -203,7 +203,7 @@ def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[byte
 
 
 def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
-    """Remove a campaign, and the contents that no other campaign has.
+    """Remove a campaign, and the bytes of its files that no other campaign has.
 
     Raises StoreError: the campaign has corrections.
     """
@@ -221,7 +221,7 @@ def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
 
 
 def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) -> bool:
-    """Store a content in pieces; True if it has its hash."""
+    """Store bytes in pieces under a SHA-256; True if they have it."""
     digest = hashlib.sha256()
     for position, piece in enumerate(pieces):
         digest.update(piece)
@@ -230,7 +230,7 @@ def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) 
 
 
 def refuse_changed(paths: Sequence[str]) -> None:
-    """Raise an error if files changed while they were read."""
+    """Raise a StoreError that lists the files that changed while they were read, if any."""
     if paths:
         raise StoreError(
             "Changed while being read: {paths}; nothing was stored. Close the program that writes "
@@ -239,7 +239,7 @@ def refuse_changed(paths: Sequence[str]) -> None:
 
 
 def store_campaign(connection: Connection, stored: StoredCampaign) -> bool:
-    """Write the row of a campaign whose contents are stored; False if the campaign exists already."""
+    """Write the row of a campaign whose files' bytes are stored; False if the campaign exists already."""
     present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == stored.id)).scalar_one_or_none()
     if present == stored.sha256:
         return False

@@ -110,7 +110,7 @@ class Store(Shown):
         return Facts(f"at {self.path}")
 
     def close(self) -> None:
-        """Close the connections."""
+        """Close the store."""
         self.engine.dispose()
 
     def __enter__(self) -> Self:
@@ -239,7 +239,7 @@ class Store(Shown):
 
 
 def default_path() -> Path:
-    """Place of the user's own store."""
+    """File of the user's own store, which is used if no other is named."""
     from platformdirs import user_data_path
 
     return user_data_path("skisnow") / "store.sqlite3"
@@ -248,7 +248,7 @@ def default_path() -> Path:
 def _hashed_files(
     folder: Path, states: Mapping[str, FileState], progress: Callable[[int], object]
 ) -> tuple[StoredFile, ...]:
-    """Hash each file; ``progress`` is called with the number of bytes."""
+    """Hash each file below a folder; ``progress`` is called with the number of bytes so far."""
     files, done = [], 0
     for path, (expected_size, _) in states.items():
         digest, size = hashlib.sha256(), 0
@@ -264,7 +264,7 @@ def _hashed_files(
 
 
 def _check(folder: Path) -> tuple[tuple[int | None, int | None], str | None]:
-    """Numbers of errors and of warnings that need an action, and the reason why the check failed; None if unknown."""
+    """Check a campaign: numbers of errors and of warnings that need an action; reason why the check failed, or None."""
     from ..reading.campaign import check_campaign
 
     try:

@@ -40,7 +40,7 @@ class StoredTable:
 
 
 def stored_tables(campaign: CampaignFiles) -> dict[str, StoredTable]:
-    """Readable tables of a campaign by file."""
+    """Tables of a stored campaign by file, without those that cannot be read."""
     files = RawFiles(campaign)
     read_description(files)
     tables = {form.file: _stored_table(files, form) for form in TABLES}
@@ -124,7 +124,7 @@ class CellError(ParameterError):
         super().__init__(self.problem(code, column), code=code)
 
     def problem(self, code: str, name: str) -> Message:
-        """Sentences with the problem and the fix, under another name of the column."""
+        """Message with the problem and the fix, with another code and name of the column."""
         return joined([Message(_PROBLEMS[code], column=name, value=self.value), self.fix])
 
 

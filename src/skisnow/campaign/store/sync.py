@@ -67,7 +67,7 @@ def sync(
     who: str = "",
     progress: Progress = no_progress,
 ) -> SyncResult:
-    """Transfer missing campaigns and entries between two stores; contradicting entries about a test are not changed.
+    """Transfer missing campaigns and entries between two stores, except contradicting entries about a test.
 
     here, there: the user's store, where choices are written first; the group's store, on a server or in a file.
     keep: sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
@@ -176,7 +176,7 @@ class _Sync:
 
     @contextmanager
     def _collect_damage(self, journal_id: str) -> Iterator[None]:
-        """Report a damaged journal with its store, and continue with the others."""
+        """Add the damage of a journal, with its store, to the problems instead of raising it."""
         try:
             yield
         except StoreError as error:
@@ -187,7 +187,7 @@ class _Sync:
 
 
 def _damage(store: Store, journal_id: str) -> str:
-    """Damage of a journal in a store, or ""."""
+    """Sentence on the damage of a journal in a store, or ""."""
     try:
         with reading(store.engine) as connection:
             entries_by_uid(connection, journal_id, entry_index(connection, journal_id).subject)
@@ -230,7 +230,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
 
 
 def settle(here: Connection, there: Connection, conflict: Conflict, side: Side, who: str) -> None:
-    """Write the entries of both sides and the choice between them to this store.
+    """Copy the other store's entries of a conflict to this one (`here`), and write entries that apply the choice.
 
     Raises StoreError: both cannot be kept.
     """
@@ -260,7 +260,7 @@ def _undo_entries(here: Connection, conflict: Conflict, numbers: Iterable[int], 
 
 
 def _rename(here: Connection, there: Connection, conflict: Conflict, who: str) -> None:
-    """Rename this store's test: its entries are undone and written again with the new name."""
+    """Rename the test of this store (`here`): its entries are undone and written again with a new name."""
     file, test = conflict.file, conflict.test
     key = FORMS[file].key if file in FORMS else ""
     subjects = {

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
-    """Check database, contents, campaigns and entries independently; empty without damage."""
+    """Search for damage of the database, the files' bytes, campaigns and entries, independently; () without damage."""
     damage: list[Finding] = []
     for of_part in (
         _database_damage,
@@ -105,13 +105,13 @@ class Finding:
     message: str
 
     def __str__(self) -> str:
-        """The damage in one line."""
+        """Line of text with the place and the message."""
         place = ", ".join(part for part in (self.campaign, self.path) if part is not None)
         return f"{place or 'database'}: {self.message}"
 
 
 def find_entry_damage(connection: Connection) -> Iterator[Finding]:
-    """Check each entry by its bytes, so that invalid text is found, too."""
+    """Search for damaged journal entries; they are read as bytes, so that invalid text is found, too."""
     rows = list(_rows_as_bytes(connection))
     places = {row["sequence"]: row["position"] for row in rows}
     for row in rows:
@@ -137,7 +137,7 @@ def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
 
 
 def _entry_damage(connection: Connection, row: _Row) -> str:
-    """Damage of an entry, or ""."""
+    """What is damaged in an entry, in words, or ""."""
     if row["sha256"] is not None and _utf8(row["sha256"]) != entry_sha256(row):
         return "it is not as it was written down"
     query = select(journal_entry).where(journal_entry.c.sequence == int(_utf8(row["sequence"])))
