@@ -53,7 +53,7 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
 
 
 def plain(value: float | None, digits: int = 3) -> str:
-    """A number for a terminal; a hyphen for None."""
+    """Text of a number for a terminal; a hyphen for None."""
     return significant(value, digits, style="plain")
 
 
@@ -64,7 +64,7 @@ def _signed(text: str, style: Style) -> str:
 
 
 def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """Both ends of an interval.
+    """Text of an interval with both ends.
 
     >>> interval([-0.5, 2.0])
     '[−0.500, 2.00]'
@@ -112,7 +112,7 @@ def json_text(contents: Mapping[str, Any]) -> str:
 
 
 def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """Minimum and maximum of a range.
+    """Text of a range, from its minimum to its maximum.
 
     >>> from_to([0.04, 90.0])
     '0.0400 to 90.0'
@@ -124,7 +124,7 @@ def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "ty
 
 
 def probability(p: float | None, *, style: Style = "typeset") -> str:
-    """A p value with two digits; below 0.001 and above 0.99 only the limit.
+    """Text of a p value with two digits; below 0.001 and above 0.99 only the limit.
 
     >>> probability(0.5234), probability(3e-12), probability(0.9999)
     ('0.52', '< 0.001', '> 0.99')
@@ -138,7 +138,7 @@ def probability(p: float | None, *, style: Style = "typeset") -> str:
 
 
 def p_equals(p: float | None) -> str:
-    """A p value inside a sentence: ``p = 0.52`` or ``p < 0.001``, not broken over lines."""
+    """Text of a p value inside a sentence: ``p = 0.52`` or ``p < 0.001``, not broken over lines."""
     text = probability(p)
     return (f"p {text}" if text[0] in "<>" else f"p = {text}").replace(" ", "\u00a0")
 
@@ -153,7 +153,7 @@ def counted(number: int, singular: str, plural: str) -> str:
 
 
 def whole(number: int) -> str:
-    """A count; five digits and more are grouped by thousands."""
+    """Text of a count; five digits and more are grouped by thousands."""
     return str(number) if abs(number) < 10_000 else f"{number:,}".replace(",", "\u202f")
 
 
@@ -263,7 +263,7 @@ def prose(template: str, **values: Any) -> Markup:
 
 
 class _HtmlFormatter(LocalFormatter):
-    """Formatter of a language that escapes all values but Markup."""
+    """Formatter for numbers of a language, which escapes all values except Markup for HTML."""
 
     def format_field(self, value: Any, format_spec: str) -> str:
         return value if isinstance(value, Markup) else Markup.escape(super().format_field(value, format_spec))

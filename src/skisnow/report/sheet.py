@@ -39,7 +39,7 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """One section in this order: key sentences in a box, paragraphs, figures, tables, paragraphs after them."""
+    """Section of a report, in this order: key sentences in a box, paragraphs, figures, tables, further paragraphs."""
 
     name: str
     title: str
@@ -133,7 +133,7 @@ _CAMPAIGN: Final = """\
 
 
 def cited_text() -> str:
-    """Citations of the program and its papers in a sentence."""
+    """Sentence in HTML that cites the program and its papers."""
     return CITED.format(version=version("skisnow"))
 
 

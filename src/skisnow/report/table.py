@@ -35,7 +35,7 @@ ROWS_IN_LATEX: Final = 2000
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column.
+    """Column of a table.
 
     key: name in CSV, including the unit; a key of the records.
     header, unit: texts in HTML and LaTeX, with symbols as ``H_V``.
@@ -56,7 +56,7 @@ class Column:
         return self.kind in ("count", "angle", "hundredths", "number", "p", "interval", "range", "estimate")
 
     def cells(self, records: Sequence[Mapping[str, Any]]) -> list[Any]:
-        """Content of this column for each record; an estimate gets its interval."""
+        """Values of this column for each record; of an estimate, the value with its interval."""
         values = [record.get(self.key) for record in records]
         if self.kind == "estimate":
             return [(value, record.get(self.interval)) for value, record in zip(values, records, strict=True)]
@@ -65,7 +65,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """One table; a row has one cell for each column.
+    """Table of a report; a row has one cell for each column.
 
     ``note`` is printed below the table. ``rows_in_html`` is the maximum number of rows in HTML; CSV has all rows.
     ``synthetic`` marks numbers that were not measured.
@@ -86,7 +86,7 @@ class Table:
 
     @property
     def full_caption(self) -> str:
-        """The caption, marked if the data are synthetic."""
+        """The caption, with a sentence if the data are synthetic."""
         return joined([self.caption, Message("Synthetic data.")]) if self.synthetic else self.caption
 
 

@@ -60,7 +60,7 @@ class RunFolders:
         return [place.parent.name for place in newest_first(self.folder.glob(f"*/{RUN_FILE}"))]
 
     def title(self, name: str) -> str:
-        """Title of a run of the lab, or the name of its folder."""
+        """Name under which the lab shows a run, or that of its folder if the lab did not compute it."""
         try:
             return read_record(self.folder / name / JOB, Job).shown_name
         except ContentError:
@@ -98,7 +98,7 @@ def _ski_of_job(job: Path) -> Ski | None:
 
 
 def add_addresses(app: FastAPI, runs: RunFolders) -> None:
-    """Add the addresses of the replays of these runs."""
+    """Add pages and data of the replays of these runs to the application."""
 
     def show(request: Request, run: str, ghost: str = "", track: str = "") -> Response:
         for name in (run, ghost) if ghost else (run,):
@@ -132,7 +132,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
 
 def _add_tables(app: FastAPI, runs: RunFolders) -> None:
-    """Add the pages that compare runs or tracks, and the files of a track."""
+    """Add the pages that compare runs or tracks, and the files of a track, to the application."""
     tracks = TrackFolders(runs.folder)
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
@@ -159,7 +159,7 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
 
 
 def _add_route(app: FastAPI, place: str, answer: Callable[..., Response], *, is_page: bool = False) -> None:
-    """Add the answer of an address; errors are shown as plain text, or on a page in the language of the request."""
+    """Answer an address by a function; its errors are shown as plain text, or on a page in the request's language."""
 
     @wraps(answer)
     def answered(*arguments: Any, **options: Any) -> Response:
@@ -191,7 +191,7 @@ def _download(content: bytes | str, name: str, media_type: str) -> Response:
 
 
 def program_file(name: str) -> Response:
-    """A script or style sheet of the replay; other files of the package are rejected."""
+    """Answer with a script or style sheet of the replay; other files of the package are rejected."""
     if name not in (*MODULES, STYLE):
         return PlainTextResponse(Message("The replay has no such file."), 404)
     kind = _TYPES[name[name.rindex(".") :]]

@@ -18,7 +18,7 @@ BUILD_S: Final = 2.0 * STALL_S  # maximum time to build a page (s)
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Limits of an upload; a campaign with a million readings has 60 MB.
+    """Limits of an upload; for comparison, a campaign with a million readings has 60 MB.
 
     upload_bytes: maximum size of the body of a request.
     unpacked_bytes: maximum size of all unpacked files of a zip.

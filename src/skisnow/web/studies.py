@@ -142,7 +142,7 @@ class Studies(Runs):
         return replace(job, state="failed", said=f"{said} {finished}")
 
     def _outcome_counts(self, name: str, language: str) -> str:
-        """Text such as "15 points: finished 12; fell 3."; the error if the table cannot be read."""
+        """Text such as "15 points: finished 12; fell 3."; the message of the error if the table cannot be read."""
         try:
             counts = self.table(name)[1].counts()
         except SkisnowError as error:
@@ -154,7 +154,7 @@ class Studies(Runs):
 
 
 def _finished(partial: Path) -> int:
-    """Number of finished points in a file of an interrupted study."""
+    """Number of computed points in the file of an unfinished study."""
     if not partial.is_file():
         return 0
     with contextlib.suppress(SkisnowError):

@@ -52,7 +52,7 @@ class Unpacking:
         self._files = 0
 
     def take(self, name: str, content: IO[bytes]) -> None:
-        """Write one file.
+        """Write one uploaded file.
 
         Raises ParameterError: the name is not valid on every system, leads out of the folder or exists, or a limit is
             exceeded.
@@ -60,7 +60,7 @@ class Unpacking:
         self._write_file(name, iter(lambda: content.read(CHUNK_BYTES), b""))
 
     def take_zip(self, packed: IO[bytes]) -> None:
-        """Unpack a zip file; sizes are counted while reading.
+        """Unpack an uploaded zip file; sizes are counted while reading.
 
         Raises ParameterError: as in `take`; or the file is not a zip file, is damaged, encrypted or not deflated, or
             contains links.
@@ -110,7 +110,7 @@ class Unpacking:
 
 
 def _is_plain(member: zipfile.ZipInfo) -> bool:
-    """True for a file that is no link, not encrypted, and packed as usual."""
+    """True if a member of a zip is a file, no link, not encrypted, and packed without compression or by deflate."""
     is_file = stat.S_IFMT(member.external_attr >> 16) in (0, stat.S_IFREG)
     return is_file and not member.flag_bits & 1 and member.compress_type in _METHODS
 
@@ -129,7 +129,7 @@ def _unpacked_pieces(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Itera
 
 @contextmanager
 def _damage_errors() -> Iterator[None]:
-    """Convert errors of zipfile inside the block, which has a dozen kinds for damaged files."""
+    """Convert errors of zipfile for a damaged file, of many types, to a ParameterError."""
     try:
         yield
     except Exception as error:
@@ -137,13 +137,13 @@ def _damage_errors() -> Iterator[None]:
 
 
 def shown(name: str) -> str:
-    """Short printable name of a file for a message."""
+    """Name of an uploaded file for a message: short, and with printable characters only."""
     plain = "".join(letter if letter.isprintable() else "?" for letter in name)
     return repr(plain if len(plain) <= 80 else plain[:79] + "…")
 
 
 def campaign_folder(folder: Path) -> Path:
-    """Folder of the campaign: the unpacked folder, or the only folder in it."""
+    """Folder with the campaign's files: the unpacked folder, or the only folder in it."""
     inside = list(folder.iterdir())
     while len(inside) == 1 and inside[0].is_dir():
         folder = inside[0]
@@ -152,7 +152,7 @@ def campaign_folder(folder: Path) -> Path:
 
 
 def zip_of(files: Iterable[tuple[str, bytes]]) -> bytes:
-    """Zip of names with contents."""
+    """Bytes of a zip of files, given by name and content."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files:
@@ -161,7 +161,7 @@ def zip_of(files: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def zip_of_campaign(write: Callable[[Path], None], *, report: Path | None = None) -> bytes:
-    """Zip of a campaign, which ``write`` writes into a folder, with the files of its report."""
+    """Bytes of a zip of a campaign, which ``write`` writes into a folder, and of the files of its report."""
     with TemporaryDirectory(prefix="skisnow-export-") as name:
         folder = Path(name) / "campaign"
         write(folder)
@@ -319,7 +319,7 @@ class Worker:
 
 
 def end_with_server() -> None:
-    """Ignore Ctrl-C, which the server handles, and end with the server."""
+    """Prepare a worker process: it ignores Ctrl-C, which the server handles, and ends with the server."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None

@@ -157,7 +157,7 @@ def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
 
 
 def _frame(data: ReportData) -> dict[str, Any]:
-    """Values of the template apart from sentences, tables and figures."""
+    """Values for the template of the page by name, except sentences, tables and figures."""
     results, has_penetration = data.results, bool(data.penetration)
     ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
     if not data.has_tests:

@@ -163,7 +163,7 @@ def letter_panels(figure: Figure) -> None:
 
 
 def left_title(axes: Axes) -> Text | None:
-    """The left title of axes; None without one."""
+    """Text object of the left title of axes; None without one."""
     text = axes.get_title(loc="left")
     if not text:
         return None
@@ -239,7 +239,7 @@ Progress: TypeAlias = Callable[[str], None]  # callback for progress messages
 
 
 def silent(_message: str) -> None:
-    """Progress callback that ignores the message."""
+    """Do nothing: for callers who need no progress."""
 
 
 def picture_files(names: Iterable[str]) -> list[str]:

@@ -22,7 +22,7 @@ _HEIGHT_MM = 105.0
 
 
 def race_lines(result: QuickestLine) -> Figure:
-    """Draw the lines with the poles from above, and below them the times of all evaluations."""
+    """Draw both lines with the poles from above, and below them the times of all simulated lines of the search."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
     above, below = figure.subplots(2, 1, height_ratios=(1.2, 1.0))
     _draw_lines(above, result)
@@ -69,7 +69,7 @@ _ROW_MM, _FRAME_MM = 9.0, 28.0
 
 
 def race_worth(variants: Sequence[Worth]) -> Figure:
-    """Draw one row for each variant: its time less that of the unchanged scenario."""
+    """Draw for each variant, in a row, its time less that of the unchanged scenario."""
     figure = new_figure(width_mm=1.5 * SINGLE_MM, height_mm=_FRAME_MM + _ROW_MM * len(variants))
     axes = figure.add_subplot()
     scenario_mark: dict[str, Any] = {"color": BLACK, "marker": "D", "markersize": 4.5, "linestyle": "none"}
@@ -94,7 +94,7 @@ MOST_NAMES = 26  # maximum number of gate names on the axis; of more gates, ever
 
 
 def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Drawing]:
-    """Figure with its caption if both crossed a gate; ``names`` of the run and of the run that it is compared with."""
+    """Yield the figure of the gaps if both runs crossed a gate; ``names``: of the run, and of the one compared with."""
     if all(gap.gap_s is None for gap in gaps):
         return
     fields = {"own": names[0], "other": names[1]}
@@ -109,7 +109,7 @@ def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Dr
 
 
 def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> Message:
-    """Sentence about who is ahead at the last gate that both crossed."""
+    """Sentence that says which run is ahead at the last gate that both crossed, and by how much."""
     last = [gap for gap in gaps if gap.gap_s is not None][-1]
     gap = last.gap_s or 0.0
     fields = {"own": names[0], "other": names[1], "gate": last.gate, "gap": abs(gap)}

@@ -115,7 +115,7 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
 
 
 def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
-    """Gap at the last gate that both crossed; empty without one."""
+    """Sentence in HTML with the gap at the last gate that both crossed; empty without one."""
     crossed = _crossed_by_both(gaps)
     if not crossed:
         return Markup("")
@@ -136,13 +136,13 @@ def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:
 
 
 def _time_texts(gap: GateGap) -> dict[str, str | None]:
-    """Times of a gate to a hundredth of a second, gap and lost with their sign; None without one."""
+    """Texts of the times of a gate to a hundredth of a second, gap and lost with their sign; None without one."""
     times, signs = gap._asdict(), {"gap_s": "+", "lost_s": "+"}
     return {name: None if times[name] is None else f"{times[name]:{signs.get(name, '')}.2f}" for name in _TIMES}
 
 
 def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> str:
-    """Text for a terminal: times, time gained, and the turns of the line; parameters as in `write_race`."""
+    """Text of a race for a terminal: times, time gained, and the turns of the line; parameters as in `write_race`."""
     gates = len(result.line.turns)
     gained = "" if result.gained is None else f", {result.gained:.3f} s less than where the search began"
     lines = [f"{gates} gates in {_time_text(result.score)}{gained}; {len(result.history)} evaluations"]
@@ -154,7 +154,7 @@ def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> 
 
 
 def worth_summary(variants: Sequence[Worth]) -> str:
-    """Table of variants for a terminal."""
+    """Table for a terminal with a line for each variant: its time less that of the scenario, on all snows."""
     width = max(len(variant.name) for variant in variants)
     lines = [
         f"{'time more than as it is (s)':{width}}  {'own snow':>9} {'mean':>8} {'± s.d.':>8} {'95 % of snows':>16}  "

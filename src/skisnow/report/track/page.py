@@ -39,7 +39,7 @@ _COLUMNS: Final = (
 
 
 def turns_table(summary: TrackSummary) -> Table:
-    """Table of the turns: the rows of turns.csv, a missing number as None."""
+    """Table with a row for each turn: the rows of turns.csv, a missing number as None."""
     return record_table(
         "turns",
         Message("Turns of {track}, with 95 % intervals due to the noise of the places.", track=summary.track.name),
@@ -63,7 +63,7 @@ def _record_json(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def page_of_track(path: Path, name: str, language: str = ENGLISH, *, back: str = "") -> str:
-    """HTML of the page of a file, with a link back to a page; errors as in `read_track` and `track_summary`."""
+    """HTML of the page about a track's file, with a link to a page; errors as in `read_track` and `track_summary`."""
     summary = track_summary(replace(read_track(path), name=name))
     with in_language(language):
         pictures = render_pictures(track_drawings(summary))

@@ -64,12 +64,12 @@ def add_page(lab: Lab) -> None:
 
 
 class _CarveField(ScenarioField):
-    """Field of a number of a carved turn."""
+    """Field for a number of a carved turn."""
 
     where = Message("a turn usually")
 
     def typed_value(self) -> object:
-        """The number, which can be "inf"."""
+        """Number of the field, also infinity for "inf"."""
         return float("inf") if self.text == "inf" else typed_number(field_label(self.key), self.text)
 
 
@@ -161,12 +161,12 @@ class _Form:
         return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
 
     def _numbers_from_snow(self) -> dict[str, bool]:
-        """True for each number of the snow that the chosen snow gives, by key."""
+        """For each number of the snow by key: True if the chosen snow states it, so that it needs no field."""
         names = CARVE_SNOW if self._is_carve else SCENARIO_SNOW
         return dict(zip(names, (self._snow.gives_hardness, self._snow.gives_stress), strict=True))
 
     def _follow(self) -> None:
-        """Show the fields that apply, and the number of points."""
+        """Show the fields that apply to the chosen inputs, and the number of points."""
         varied, from_snow = {axis.name for axis in self._axes}, self._numbers_from_snow()
         for name, field in self._fields.items():
             field.place.set_visibility(name not in varied and not from_snow.get(name))
@@ -220,7 +220,7 @@ class _Form:
         return name in SCENARIO_SNOW and bool(field.text) and (bool(varied) or any(other.is_changed for other in pair))
 
     def _chosen_names(self) -> list[str]:
-        """Name of the ski, and of carved turns also of further skis."""
+        """Names of the chosen ski and, for carved turns, of further skis."""
         further = [str(name) for name in self._further.value or ()] if self._is_carve else []
         return list(dict.fromkeys([str(self._ski.value), *further]))
 
@@ -267,7 +267,7 @@ class _Card(JobCard):
         self._table = named(table, Message("Table and figure of {name}", name=job.name))
 
     def inputs(self, job: Job) -> tuple[str, ...]:
-        """Subject and varied inputs of the study in words."""
+        """Subject and varied inputs of a study, each in words."""
         return CARVED if job.scenario == CARVE else job.scenario, job.given
 
     def show(self, job: Job) -> None:

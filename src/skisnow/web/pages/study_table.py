@@ -90,7 +90,7 @@ def add_page(lab: Lab) -> None:
 
 
 def _show_inputs(job: Job | None) -> None:
-    """Show the varied and the fixed inputs."""
+    """Show the varied and the fixed inputs of a study."""
     if job is not None:
         keys = study_keys(job.scenario)
         sentence(job.given, "quiet")
@@ -110,7 +110,7 @@ def _show_map(name: str, language: str) -> None:
 
 
 class _ResultsView:
-    """Chart of a result over the input with more values, with lines for the other input; and the rows."""
+    """Rows of a study, and a chart of a chosen result: over one input, with a line for each value of the other."""
 
     def __init__(self, study: Study, table: StudyTable) -> None:
         self._table = table
@@ -139,7 +139,7 @@ class _ResultsView:
         chart.show([self._chart_line(line, styles.get(line, BEHIND), result) for line in order])
 
     def _line_of(self, row: dict[str, Any]) -> tuple[Any, ...]:
-        """Values that the points of a line share."""
+        """Values of the inputs that all points of a row's line share."""
         return tuple(row["ski_name" if name == SKI else name] for name in self._others)
 
     def _input_name(self, name: str) -> str:
@@ -177,7 +177,7 @@ class _ResultsView:
 
 
 def _short(value: Any) -> str:
-    """A value of a varied input with four digits as in the map."""
+    """Text of a varied input's value with four digits, as in the map."""
     return number_text(f"{value:.4g}") if isinstance(value, float) else typed_form(value)
 
 
