@@ -59,7 +59,7 @@ def answer_question(question: CarveQuestion, *, sources: Sources | None = None) 
 
 
 def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
-    """Snow of a question: named by its words, or of its numbers."""
+    """Snow of a question: of the campaign or publication that it names, or with its own numbers."""
     if question.H_V_N_per_mm3 is not None:
         stress = question.S_f_N_per_mm2
         return SnowProperties(

@@ -199,7 +199,7 @@ def differentiable_carve(
 def _other_radius(
     find: Callable[..., Solution], model: ClampedSki, conditions: Conditions, solution: Solution
 ) -> float | None:
-    """Turn radius with the other spread of side force, whose equilibrium is near: one unknown changes its meaning."""
+    """Turn radius (m) with the other spread of the side force, searched by `find` from this solution; None: none."""
     drawn = conditions.load
     if conditions.by_reaction:
         drawn = float(model.stations.weight @ np.maximum(solution.edge_depth, 0.0))

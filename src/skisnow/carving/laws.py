@@ -33,7 +33,7 @@ class PressureLaw(PressureCallback):
         self.refused: Message | None = None
 
     def stress(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Stress (N/m²) of places at depths (m), that were at deepest depths (m), at edge angles (rad)."""
+        """Stress (N/m²) of places at depths, maximum depths so far (m) and edge angles (rad)."""
         return self.bear(depth, deepest, edge_angle)[0]
 
     def refuse(self, reason: Message) -> None:
@@ -73,7 +73,7 @@ class SnowLaws:
     def side_force_limit(
         self, depth: FloatArray, force: FloatArray, edge_angle: FloatArray, length: FloatArray
     ) -> float | None:
-        """Side force of the edge (N), by its depths (m), the snow's force per length (N/m), edge angles and lengths.
+        """Largest side force (N) by depths (m), snow forces per length (N/m), edge angles and lengths.
 
         None if S_f of the snow applies, or the strength is not finite.
         """

@@ -57,7 +57,7 @@ class OutputGrowth:
     edge_by: FloatArray = field(default_factory=lambda: np.zeros((4, 0)))
 
     def scaled(self, unit: float) -> OutputGrowth:
-        """The same in another unit of the output."""
+        """Output and derivatives divided by a unit of the output."""
         parts = [(part.name, getattr(self, part.name)) for part in fields(self) if part.name != "edge"]
         divided: dict[str, Any] = {name: value / unit for name, value in parts if value is not None}
         return replace(self, **divided)
@@ -154,7 +154,7 @@ def _with_ends(
 
 
 def _contact_ends(at: CarveRequest) -> tuple[OutputGrowth, OutputGrowth] | None:
-    """Stations at which the depth of the edge passes zero, front first; None where the contact reaches tip or tail."""
+    """Stations (m) of both contact ends, with derivatives, front first; None if the contact reaches tip or tail."""
     depth, station = at.solution.edge_depth, at.model.stations.station
     below = np.flatnonzero(depth > 0.0)
     if below[0] == 0 or below[-1] == len(depth) - 1:
@@ -237,7 +237,7 @@ FORCE_ALONG_EDGE: Final = "force_along_edge_N_per_m"
 
 
 def output_growth(name: str, at: CarveRequest) -> OutputGrowth | None:
-    """An output in the unit of its name; None where it does not exist."""
+    """An output and its derivatives, in the unit of its name; None if it does not exist."""
     compute, unit, _ = OUTPUTS[name]
     growth = compute(at)
     return None if growth is None else growth.scaled(unit)

@@ -271,7 +271,7 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
 
 
 def implausible_values(question: CarveQuestion) -> tuple[str, ...]:
-    """Numbers that look like those of another unit, in words."""
+    """Warnings about numbers that look as if they were in another unit."""
     texts = []
     degrees = in_degrees_if_radians(question.edge_angle_deg)
     if degrees is not None:

@@ -119,7 +119,7 @@ class CarveDerivatives:
 
     @property
     def everyday_parameters(self) -> tuple[str, ...]:
-        """Turn and snow, the ski's widths and camber, factors of its sidecut and stiffness."""
+        """Names of the most used parameters: turn, snow, widths, camber, factors of sidecut and stiffness."""
         factors = ("edit.sidecut_depth", "edit.EI_N_m2", "edit.GJ_N_m2")
         everyday = (*CONDITIONS, *(f"ski.{key}" for key in LINEAR), *factors)
         return tuple(name for name in self.parameters if name in everyday)

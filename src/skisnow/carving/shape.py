@@ -116,7 +116,7 @@ def _interpolation_at(station: bytes, place: tuple[float, ...]) -> _Interpolatio
 
 
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
-    """Derivatives of the shape by a parameter of the ski; elements and rows of the tables keep their numbers."""
+    """Derivatives of the shape by a parameter of the ski; the numbers of elements and of rows stay."""
     growth, station = table_growth(ski, name), ski.station.tobytes()
     widest = widest_station(ski, clamp_length, elements)
     fixed = _fixed_shape(growth, station, clamp_length, elements, widest)
@@ -227,7 +227,7 @@ class ShapeGradient:
         return out
 
     def _add_edge(self, model: ClampedSki, u: FloatArray, node: FloatArray) -> None:
-        """Add the derivatives by the nodes that deflection and twist at fixed places give, for the same unknowns."""
+        """Add to `node` the derivatives by the nodes through deflection and twist at fixed places of the edge."""
         element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
         value, length = _by_element(model, u)[element], _element_lengths(model)[element]
         local, (by_deflection, by_twist) = (model.node[element] - self.edge) / length, self.by_edge[2:]
@@ -313,10 +313,10 @@ def beam_gradients(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> Flo
 def growth_by_tables(
     model: ClampedSki, elements: int, tables: FloatArray, columns: FloatArray, stiffness: FloatArray, edges: Edges
 ) -> FloatArray:
-    """Derivatives of k outputs by parameters of the ski whose tables (parameters, 5, rows) grow on stations that stay.
+    """Derivatives (k, parameters) of outputs by parameters that change the tables (parameters, 5, rows), not stations.
 
-    From the growth with width and height of the base at the stations (k, 2, 2 n), with EI and GJ at the Gauss points
-    (k, 2, n, 4), and for each output with the first two at places of the edge.
+    columns, stiffness, edges: derivatives of outputs by width and height of the base at the stations (k, 2, 2 n), by
+    EI and GJ at the Gauss points (k, 2, n, 4), and by width and height at places of the edge.
     """
     station, out = model.ski.station.tobytes(), np.zeros((len(columns), len(tables)))
     mesh, grow = _mesh(station, model.clamp_length, elements), np.asarray(tables.any(axis=-1))
