@@ -69,7 +69,7 @@ _AT_THE_END: Final = 1e-3  # m: a row at the end of the sidecut length, measured
 
 
 def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
-    """Widths (m) at stations (m).
+    """Width (m) as a function of station (m), from a table of widths.
 
     A dense table is used directly. For a coarser table a parabola, fitted to the rows within the sidecut length, gives
     the sidecut; the differences of the rows from it follow the shape-preserving cubic of `StationTable` (modelling

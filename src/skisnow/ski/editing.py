@@ -35,7 +35,7 @@ _END: Final = 0.005  # m between two stations at least (modelling assumption)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SkiEdit:
-    """Changes of a ski.
+    """Changes of a ski: factors of whole curves, and values of curves at stations.
 
     station: places (m from the boot, falling) at which values may be given. Shape (k,).
     factors: by column of `EDITED_COLUMNS`, for ``mass_per_length_kg_per_m``, and for `SIDECUT`; default: 1.
@@ -74,7 +74,7 @@ def _plain(station: FloatArray) -> FloatArray:
 
 
 def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
-    """The ski with an edit.
+    """Copy of a ski with an edit applied.
 
     ski: to begin with; it is not changed.
     edit: factors act on the whole of a curve. That of the sidecut's depth leaves the narrowest place as wide as it is;

@@ -86,7 +86,7 @@ class FileValues:
         return shown_value(self.values[key])
 
     def ski(self, *, like: Ski | None = None) -> Ski:
-        """Put the ski together.
+        """Build the ski from the keys and the table of the file.
 
         like: a ski of nearly the same lengths, whose stations are stretched to this ski; None: own stations.
         """

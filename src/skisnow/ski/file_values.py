@@ -50,7 +50,7 @@ def _is_usual(value: float, quantity: Quantity) -> bool:
 
 
 def _likely_unit(value: float, quantity: Quantity) -> Message | None:
-    """Question for the unit in which an unusual value would be a usual one; None without such a unit."""
+    """Question whether a value is in another unit, in which it would be usual; None without such a unit."""
     if not _is_usual(value, quantity):
         for name, factor in _OTHER_UNITS.get(quantity.unit, ()):
             if _is_usual(value * factor, quantity):

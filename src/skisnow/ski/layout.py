@@ -80,7 +80,7 @@ def layout_of_lengths(
     tail_overhang: float = TAIL_OVERHANG,
     boot_position: float = 0.0,
 ) -> Layout:
-    """Lay a ski out by its lengths (m).
+    """Layout of a ski from its lengths (m).
 
     length: from tip to tail along the base.
     running_length, sidecut_length: between the contact points, between the widest points.
@@ -255,7 +255,7 @@ def _height(base: BaseShape, station: bytes, layout: Layout) -> FloatArray:
 
 
 def _arch(place: FloatArray, half: float, rounding: float) -> FloatArray:
-    """Camber of height 1 over ±half: curvature -k up to half - rounding from the middle."""
+    """Height of a camber arch (1 in the middle, 0 at ±half) at places from its middle; the ends are rounded."""
     plain = half - rounding
     k = 2.0 / (plain * half)  # the whole drop k plain half / 2 is 1
     inside = np.minimum(np.abs(place), plain)
@@ -265,7 +265,7 @@ def _arch(place: FloatArray, half: float, rounding: float) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class _End:
-    """The rise of the base outwards from a contact point (m)."""
+    """Rise of the base outwards from a contact point: rocker, then shovel or tail (m)."""
 
     name: str
     rocker_length: float

@@ -151,7 +151,7 @@ def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like:
 
 
 def keys_text(keys: Mapping[str, Any]) -> str:
-    """Text of a ski file without a table; numbers with nine digits."""
+    """TOML text of a ski file from its keys, without a table; numbers have nine digits."""
 
     def text(value: Any) -> str:
         if isinstance(value, list | tuple):

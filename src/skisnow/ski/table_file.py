@@ -163,7 +163,7 @@ def _tabulated(rows: bytes, values: bytes, station: bytes) -> FloatArray:
 
 
 def _cubic(x: FloatArray, y: FloatArray, slope: FloatArray, station: FloatArray) -> FloatArray:
-    """Cubics at stations (m) through points (…, k) with slopes; beyond the ends their values."""
+    """Values at stations (m) of cubics through points (…, k) with these slopes; constant beyond the ends."""
     within = np.clip(station, x[0], x[-1])
     at = np.clip(np.searchsorted(x, within, side="right") - 1, 0, x.size - 2)
     width = np.diff(x)[at]
