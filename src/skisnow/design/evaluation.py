@@ -55,7 +55,7 @@ class Evaluator:
         )
 
     def keys(self, z: FloatArray) -> dict[str, Any]:
-        """Keys of the ski file."""
+        """Keys of the ski file with these variables."""
         return designed_keys(self.task.ski.keys or {}, self.task.variables, self.values(z).tolist())
 
     def points(self, z: FloatArray) -> tuple[CarveDerivatives, ...]:

@@ -85,7 +85,7 @@ class MeasuredSki:
 
 
 def measured_ski(measured: Measured) -> MeasuredSki:
-    """Make a ski. Raises ParameterError: a table cannot be read, or something is needed that is not known."""
+    """Make a ski from measurements. Raises ParameterError: a table is unreadable, or a needed value is unknown."""
     return _SkiMaker(measured).made()
 
 
@@ -99,7 +99,7 @@ class _SkiMaker:
         self._length = self._length_of_ski()
 
     def made(self) -> MeasuredSki:
-        """The ski and where its numbers come from."""
+        """The finished ski, its measured stiffnesses, and the assumptions."""
         layout, width = self._outlined()
         bending = self._stiffness("EI_N_m2", BEND_TEST, layout)
         torsion = self._stiffness("GJ_N_m2", TORSION_TEST, layout)
@@ -151,7 +151,7 @@ class _SkiMaker:
         return length
 
     def _outlined(self) -> tuple[Layout, StationFunction]:
-        """Lengths, and width by station."""
+        """Layout of the ski, and its width (m) as a function of station (m)."""
         like, known = self._like, self._measured
         running_share = like.running_length / like.sidecut_length
         if self._width is None:
@@ -187,7 +187,7 @@ class _SkiMaker:
         return self._length * self._like.sidecut_length / self._like.length
 
     def _layout_of_widths(self, running_share: float) -> tuple[Layout, StationFunction]:
-        """Lengths from the widest places of the measured widths."""
+        """Layout and width function, with the sidecut between the widest measured places."""
         assert self._width is not None
         known = self._measured
         from_tail = self._from_tail(self._width[0])
@@ -272,7 +272,7 @@ class _SkiMaker:
         return self._of_like(name, layout)
 
     def _of_like(self, name: str, layout: Layout) -> StationFunction:
-        """A table of the similar ski, its places moved with tail, contact points and tip."""
+        """Curve of the similar ski, moved with tail, contact points and tip to this layout."""
         like = self._like
         own = [layout.tail, *layout.contact_points[::-1], layout.tip]
         theirs = [like.station[-1], *like.contact_points[::-1], like.station[0]]

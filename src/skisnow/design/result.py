@@ -156,7 +156,7 @@ def write_files(folder: Path, contents: Mapping[str, str]) -> tuple[Path, ...]:
 
 
 def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Design:
-    """The design at variables from 0 to 1."""
+    """Result of a design from its variables z (0 to 1) and all starts of the search."""
     evaluator, task = search.evaluator, search.evaluator.task
     keys = evaluator.keys(z) | {
         "name": f"{task.ski.name}, designed",
@@ -214,7 +214,7 @@ def _output_rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) 
 
 
 def _slips(rows: tuple[DesignRow, ...]) -> list[Message]:
-    """The conditions at which the snow does not hold the edge of the design."""
+    """Messages about the conditions at which the edge of the design slips."""
     return [
         Message(
             "Condition {condition}: the edge slips, as the grip utilisation is {grip:.3g}. Add a goal of at most 1.",
@@ -255,7 +255,7 @@ def _active_bounds_and_constraints(search: Search, z: FloatArray) -> list[Messag
 
 
 def _constraints_at(search: Search, z: FloatArray, *, broken: bool) -> list[Message]:
-    """The constraints that a design breaks, or those at whose limit it is."""
+    """Messages about the constraints that a design breaks (`broken`), or whose limit it just reaches."""
     matrix, lowest = linear_constraints(search.evaluator)
     limits = [
         (number, limit)

@@ -105,7 +105,7 @@ def task_of(task: str | Path | Mapping[str, Any] | DesignTask) -> DesignTask:
 
 
 def begins_of(evaluator: Evaluator) -> list[FloatArray]:
-    """Starts of a search: the ski itself, and random ones."""
+    """Variables of each start of a search: those of the ski itself, then random ones."""
     task = evaluator.task
     random = np.random.default_rng(task.seed)
     return [evaluator.start, *random.uniform(0.0, 1.0, (task.starts - 1, len(task.variables)))]

@@ -315,7 +315,7 @@ class Variable:
 
     @property
     def width(self) -> float:
-        """Distance of the bounds."""
+        """Upper minus lower bound, in the unit of the ski file."""
         return self.highest - self.lowest
 
 
