@@ -23,13 +23,13 @@ MOST_POINTS: Final = 1_000_000
 
 
 class LazySequence(Sequence[Point], ABC):
-    """Values by name for each number, 0 or more, computed on access; equal to any sequence of equal values."""
+    """Read-only sequence of values by name, computed on access; equal to any sequence of equal values."""
 
     __slots__ = ()
 
     @abstractmethod
     def point(self, number: int) -> Point:
-        """The values with this number, which is within the range."""
+        """Values by name of the element with this number, which the caller has checked."""
 
     @overload
     def __getitem__(self, place: int) -> Point: ...
@@ -55,7 +55,7 @@ class LazySequence(Sequence[Point], ABC):
 
 
 class Points(LazySequence):
-    """Inputs of the points of a study; never a list of them all."""
+    """Inputs of all points of a study, computed on access instead of stored in a list."""
 
     __slots__ = ()
 
@@ -127,7 +127,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SampledPoints(Points):
-    """A value of every column for each point.
+    """Points of a sample, each with one value of every column.
 
     fixed: values of the inputs that all points share.
     columns: by name; none of the names is fixed.
@@ -222,7 +222,7 @@ class Axis:
         return cls(key, ends=(low, high), n=limits.n, log=log)
 
     def on_grid(self) -> list[Any]:
-        """The values of a grid."""
+        """Values of the axis on a grid."""
         if self.values:
             return list(self.values)
         if self.n is None:

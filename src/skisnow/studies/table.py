@@ -88,7 +88,7 @@ class StudyTable(Shown):
         return [row for row in self.rows if row["outcome"] != FAILED]
 
     def csv(self) -> str:
-        """The table as text: numbers with all their digits, true and false, nothing if the value is missing."""
+        """Text of the table as CSV: numbers with all digits, true and false, empty cells for missing values."""
         return csv_text([self.columns, *([cell(row.get(name)) for name in self.columns] for row in self.rows)])
 
     def counts(self) -> dict[str, int]:
@@ -101,7 +101,7 @@ class StudyTable(Shown):
 
 
 def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequence[str] = ()) -> StudyTable:
-    """Read a study's table back.
+    """Read a study's table from its file.
 
     path: The file: CSV, or by the ending of its name SQLite or Parquet.
     keys: The study's inputs: the texts among them stay texts.
