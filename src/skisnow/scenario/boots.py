@@ -272,7 +272,7 @@ def _of_csv(path: Path, text: str) -> list[Row]:
 
 
 def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str]]:
-    """Rows of OpenSim's table, and the statements of its header."""
+    """Rows of the table below the header of an OpenSim file, and the statements of the header."""
     ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
     if not ends:
         raise ParameterError("{path} has no line {head_end}, which ends the head of a .mot or .sto file; add it").tag(

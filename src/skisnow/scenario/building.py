@@ -32,7 +32,7 @@ SNOW_CHOICES = "Give snow.H_V_N_per_mm3 and snow.S_f_N_per_mm2, or snow.results,
 
 
 def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
-    """The scenario, and the warnings of the readers of its ski and course."""
+    """Scenario built from resolved values, and the warnings of the readers of its ski and course."""
     values = dict(resolution.values)
     for name, key in SCENARIO_KEYS.items():
         if key.needed and not (name == "friction.mu_0" and LAW_FILE in values):
@@ -126,7 +126,7 @@ def _build_ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str
 
 
 def _contact(resolution: Resolution) -> Contact:
-    """Snow, unloading, friction and layers of a scenario, from its resolved values."""
+    """Contact of a scenario, from its resolved values of snow, unloading, friction and layers."""
     values = resolution.values
     ratio = ELASTIC if values.get("snow.penetration") == "elastic" else values.get(UNLOADING)
     snow = _snow(resolution).without_measured(unloading=ratio is not None, displacement=DISPLACEMENT in values)
@@ -149,7 +149,7 @@ def _contact(resolution: Resolution) -> Contact:
 
 
 def _snow(resolution: Resolution) -> SnowProperties:
-    """Named snow, numbers and map, each for the quantities that they give."""
+    """Snow combined from named snow, numbers and map, each for the quantities that it gives."""
     values, snow, snow_map = dict(resolution.values), resolution.snow, resolution.snow_map
     if "snow.site" in values and "snow.results" not in values:
         raise ParameterError("snow.site names one site of a campaign and needs snow.results. Remove it").tag(

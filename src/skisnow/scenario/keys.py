@@ -158,7 +158,7 @@ for _key in SCENARIO_KEYS:
 
 
 def free_key(word: str) -> str:
-    """The scenario's key that a word means.
+    """Full key of the scenario that a word means, such as a name without section or unit.
 
     >>> free_key("S_f"), free_key("drag_area"), free_key("friction.mu_0"), free_key("start.heading_deg")
     ('snow.S_f_N_per_mm2', 'drag.drag_area_m2', 'friction.mu_0', 'start.heading_deg')

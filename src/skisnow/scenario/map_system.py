@@ -43,7 +43,7 @@ _MERCATOR: Final = re.compile(r'PROJECTION\s*\[\s*"(?:popular[_ ]visualisation[_
 
 @dataclass(frozen=True, slots=True)
 class MapSystem:
-    """Units of a map system.
+    """Units of a map's coordinate system.
 
     text: its description as WKT.
     in_degrees: True for longitude and latitude.

@@ -65,7 +65,7 @@ class PlacedValues:
 
 @dataclass(frozen=True, slots=True)
 class Raster:
-    """A grid of heights as its file gives it.
+    """Grid of heights as read from its file.
 
     values: heights (rows, columns) in units of `height_unit`, NaN in a hole.
     first, step: middle of the first cell and distance to the next, in x and in y, in the map system's units.
@@ -162,7 +162,7 @@ def require_metres(path: str | Path, heights: PlacedValues, column: str, *, stee
 
 
 def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
-    """Heights over places that rise, in m."""
+    """Heights of a raster in m, at places (m) in rising order, as one column."""
     path, system, (n_rows, n_columns) = raster.path, raster.system, raster.values.shape
     require_size(path, n_columns, n_rows)
     if system is not None:

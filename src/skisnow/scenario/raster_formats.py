@@ -73,7 +73,7 @@ def _require_one_band(path: str | Path, source: Any) -> None:
 
 
 def _heights(source: Any) -> FloatArray:
-    """The first band in its unit, NaN where it is masked."""
+    """Numbers of the first band of a GeoTIFF, with scale and offset, in its unit; NaN where masked."""
     band = source.read(1, masked=True)
     scale, offset = float(source.scales[0]), float(source.offsets[0])
     with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
@@ -164,7 +164,7 @@ def _refuse(path: str | Path, what: str) -> NoReturn:
 
 
 def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
-    """Numbers by lower-case word, and the place in the text at which the values begin."""
+    """Header of an ESRI grid: numbers by lower-case word, and the index in the text at which the values begin."""
     header: dict[str, float] = {}
     at = 0
     while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:

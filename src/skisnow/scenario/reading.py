@@ -101,7 +101,7 @@ def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
 
 
 def scenario_file(name_or_path: str | Path, *, changes: Mapping[str, object] = _NOTHING) -> ScenarioFile:
-    """Read a scenario together with the words that it was given in, and all warnings.
+    """Read a scenario together with its keys, values, files and all warnings.
 
     Parameters, errors: as `load_scenario`.
     """

@@ -190,7 +190,7 @@ class Scenario(Shown):
 
     @property
     def flexing_ski(self) -> Ski:
-        """The ski with the stiffness of the computation."""
+        """The ski with EI and GJ times `stiffness_factor`."""
         return self.ski.stiffened(self.stiffness_factor)
 
     def _repr_facts(self) -> Facts:

@@ -74,12 +74,12 @@ class SnowMap(Shown):
 
     @property
     def mean_hardness(self) -> float | None:
-        """Geometric mean of H_V over the map's places (N/m³), where it has it."""
+        """Geometric mean of H_V (N/m³) over the map's places; None if the map has no H_V."""
         return None if self.hardness is None else float(np.exp(np.mean(np.log(self.hardness.values))))
 
     @property
     def mean_stress(self) -> float | None:
-        """Mean of S_f over the map's places (N/m²), where it has it."""
+        """Mean of S_f (N/m²) over the map's places; None if the map has no S_f."""
         return None if self.failure_shear_stress is None else float(self.failure_shear_stress.values.mean())
 
     def means_of(self, snow: SnowProperties) -> SnowProperties:

@@ -200,7 +200,7 @@ PROFILE_STEP: Final = 0.02
 
 
 def surface_of(slope: Slope) -> surfaces.Plane | surfaces.Grid:
-    """Surface for a `SnowField`."""
+    """Surface of a slope in the form that `SnowField` accepts."""
     if isinstance(slope, Plane):
         return surfaces.Plane()
     if isinstance(slope, Terrain):
