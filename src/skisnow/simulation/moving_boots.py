@@ -193,17 +193,17 @@ class BootHistory(Shown):
 
     @property
     def force(self) -> FloatArray:
-        """(n, 2, 3) of the ski on its boot, in the slope's axes (N)."""
+        """Force (N) of each ski on its boot in the slope's axes, (n, 2, 3)."""
         return np.asarray(np.einsum("nkca,nkc->nka", self.axes, self.own_force))
 
     @property
     def moment(self) -> FloatArray:
-        """(n, 2, 3) of the ski on its boot, about it, in the slope's axes (N m)."""
+        """Moment (N m) of each ski on its boot, about the boot, in the slope's axes, (n, 2, 3)."""
         return np.asarray(np.einsum("nkca,nkc->nka", self.axes, self.own_moment))
 
     @property
     def angles(self) -> FloatArray:
-        """(n, 2, 3) edge angle, pitch and heading in the slope's axes (rad)."""
+        """Edge angle, pitch and heading (rad) of each boot in the slope's axes, (n, 2, 3)."""
         return angles_of(self.axes)
 
     def _repr_facts(self) -> Facts:

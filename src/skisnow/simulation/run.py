@@ -265,7 +265,7 @@ class Run(Shown):
 
     @property
     def speed(self) -> FloatArray:
-        """(n,) of the middle between the boots (m/s)."""
+        """Speed (m/s) of the middle between the boots, (n,)."""
         return np.asarray(np.linalg.norm(self.velocity, axis=1))
 
     @property

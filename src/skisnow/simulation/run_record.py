@@ -87,7 +87,7 @@ class Record:
             self.run_length -= _arc(self._moments[-1], gone)
 
     def histories(self) -> dict[str, Any]:
-        """The arrays of a `Run`."""
+        """Arrays of a `Run` by name, from the stored moments."""
         place, attitude, velocity, rows = map(np.array, zip(*self._moments, strict=True))
         parts = moment_parts(rows, self.setup.dynamics.body.skis)
         time, energies = parts["time"], stored_and_lost(parts)

@@ -197,7 +197,7 @@ def run_gates(run: Run) -> CourseResult | None:
 
 
 class GatesAhead:
-    """Next gate of a course during a run."""
+    """The gates of a course that a run has not passed yet."""
 
     def __init__(self, course: Course | None) -> None:
         self._lines = () if course is None else course.lines

@@ -347,7 +347,7 @@ def _through_gates(run: Run, records: Sequence[BalanceRecord] = ()) -> Run:
 
 
 def _groove(setup: Setup) -> Groove:
-    """The lines with a groove, each as one piece from its first knot to its last."""
+    """Grooves of a run: one piece for each line, from the first knot of its groove to the last."""
     rows = setup.dynamics.contact.tracks()
     if not len(rows):
         return Groove(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0))

@@ -176,7 +176,7 @@ def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...
 
 
 def _repeat_with_laws(run: Run) -> Simulate:
-    """Simulation function with the laws of a run."""
+    """Function that simulates a scenario with the laws of a run."""
     from .simulated_run import simulate  # which loads the compiled core
 
     return partial(simulate, laws=run.laws, strength_along=run.strength_along)
