@@ -27,7 +27,7 @@ POINTS: Final = 400
 
 
 def ski_mjcf(ski: Ski, *, segments: int = SEGMENTS, free: bool = True) -> str:
-    """The text of a model of a ski.
+    """MJCF text (MuJoCo's format) of a ski as a chain of rigid segments with elastic hinges.
 
     ski: its shape, EI, GJ and mass are taken.
     segments: number of segments of the chains before and behind the binding together, ≥ 4.
@@ -98,7 +98,7 @@ def _half_ski_xml(ski: Ski, name: str, end: FloatArray) -> str:
 
 
 def _inertial(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0.0, 0.0)) -> str:
-    """Mass, middle and inertia of the ski between two stations, in axes through a place along it and its height."""
+    """XML of mass, centre and inertia of the ski between two stations, relative to `origin`: (x, z) (m)."""
     place = _points(near, far)
     at = ski.at(place)
     mass = at.mass_per_length * abs(far - near) / POINTS
@@ -127,7 +127,7 @@ def _box_xml(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0
 
 
 def _points(near: float, far: float) -> FloatArray:
-    """Middles of equal pieces between two stations."""
+    """Midpoints (m) of equal pieces between two stations."""
     return np.asarray(near + (np.arange(POINTS) + 0.5) / POINTS * (far - near))
 
 
@@ -206,7 +206,7 @@ class SnowForces:
 
     @contextmanager
     def installed(self) -> Iterator[SnowForces]:
-        """MuJoCo calls this within the block; the previously installed callback is called after it."""
+        """MuJoCo calls this object within the block; afterwards the previous callback is installed again."""
         before = self._engine.get_mjcb_passive()
         self._engine.set_mjcb_passive(self)
         try:

@@ -91,7 +91,7 @@ def _write_fmu(model: Model, path: Path, fmi: Version) -> Path:
 
 
 def _licence() -> str:
-    """Licence of skisnow, whose library the FMU contains."""
+    """Text of skisnow's licence, for an FMU, which contains its library."""
     try:
         text = distribution("skisnow").read_text("licenses/LICENSE")
     except PackageNotFoundError:

@@ -302,7 +302,7 @@ def boots_of_markers(
 
 
 def _pose(markers: Markers, of: BootMarkers, turned: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Places (n, 3) and axes (n, 3, 3), rows ahead, left and off the base."""
+    """Places (n, 3) (m) and axes (n, 3, 3) of a boot: rows ahead, left and off the base, from its three markers."""
     heel, toe, left = (_complete_places(markers, name) @ turned.T for name in (of.heel, of.toe, of.left))
     ahead = _unit_vectors(toe - heel, of)
     off = _unit_vectors(np.cross(ahead, left - heel), of)
