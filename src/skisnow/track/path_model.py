@@ -88,7 +88,7 @@ class PathFit:
 
 
 class _Weights(NamedTuple):
-    """Precisions of the transitions, and the part of the normal equations that no state changes."""
+    """Precisions of the transitions, and the part of the normal equations that does not depend on the state."""
 
     place: FloatArray
     turn: FloatArray
@@ -97,7 +97,7 @@ class _Weights(NamedTuple):
 
 
 class _Residuals(NamedTuple):
-    """Residuals of places and points, weighted ones of both chains, what derivatives need, half the weighted sum."""
+    """Residuals of places, points and both chains, values for their derivatives, and half their weighted squares."""
 
     place: FloatArray
     turn_pull: FloatArray

@@ -208,7 +208,7 @@ def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float |
 
 
 def turning_points(values: FloatArray, least: float) -> list[int]:
-    """Numbers of the first value, of the highest and lowest in turn, and of the last.
+    """Indices of the first value, of alternating highest and lowest values, and of the last value.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def turning_points(values: FloatArray, least: float) -> list[int]:
 
 
 def _local_extremes(values: FloatArray) -> list[int]:
-    """Numbers at which the direction changes, with the last: only these can be turning points."""
+    """Indices at which the values change direction, and the last index: only these can be turning points."""
     signs = np.sign(np.diff(values))
     moving = np.flatnonzero(signs)
     changes = np.flatnonzero(np.diff(signs[moving])) + 1

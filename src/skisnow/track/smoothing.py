@@ -237,7 +237,7 @@ class Resolution:
 
     @classmethod
     def of_window(cls, window: float, interval: float, place_noise: float, rate_noise: float | None) -> Resolution:
-        """Noise of points ``interval`` (s) apart, from the noise of places (m) and velocities (m/s, or None)."""
+        """Resolution of a window (s), from the interval of points (s) and noises of places (m) and velocities."""
         each_side = int(np.floor(window / 2.0 / interval + 1e-9))
         stride = max(1, each_side // 200)  # a dense window's transfer function needs no more points
         tau = np.arange(-each_side, each_side + 1, stride) * interval

@@ -114,7 +114,7 @@ class Track(Shown):
 
     @property
     def flagged(self) -> dict[str, int]:
-        """Number of points with each flag, without flags of no point."""
+        """Number of flagged points by flag; flags without points are omitted."""
         return {code: int(np.sum(where)) for code, where in self.flags.items() if np.any(where)}
 
     def at_origin(self, origin: GeodeticPoint) -> Track:
@@ -259,7 +259,7 @@ def _impossible_points(time: FloatArray, place: FloatArray) -> tuple[BoolArray, 
 
 
 def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray) -> list[int]:
-    """Inner points with an impossible path through them and a possible path past them of less than half the length."""
+    """Indices of inner points with an impossible path through them and a possible, less than half as long one past."""
     over = lengths[:-1] + lengths[1:]
     past = np.hypot(*(place[2:] - place[:-2]).T)
     most = FASTEST * (time[2:] - time[:-2])

@@ -158,7 +158,7 @@ def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> 
 
 
 def _sharpest(motion: TrackMotion, piece: _Piece) -> int:
-    """Number of the point with the largest curvature, without points whose standard error is unusually large."""
+    """Index of the point with the largest curvature, without points whose standard error is unusually large."""
     inside = np.arange(piece.first, piece.last + 1)
     points = inside[np.isfinite(motion.curvature[inside])]
     error = motion.curvature_sd[points]

@@ -18,7 +18,7 @@ DOUBTFUL: Final = 0.005
 
 
 def gate_rows(result: CourseResult) -> list[dict[str, Any]]:
-    """Rows with `COLUMNS`; times count from the track's first point; None for missing values."""
+    """Rows of gates.csv by `COLUMNS`; times count from the track's first point; None for missing values."""
     rows, before = [], result.start_time
     for passage in result.passages:
         time, gate = passage.time, passage.gate

@@ -194,7 +194,7 @@ _CHECKSUM: Final = 2
 
 @dataclass(eq=False)
 class _Records:
-    """The messages ``record``, one entry each, with the number of the segment."""
+    """Values of the FIT messages ``record``, one entry each, with the number of their segment."""
 
     times: list[datetime] = field(default_factory=list)
     numbers: list[tuple[float, ...]] = field(default_factory=list)

@@ -181,7 +181,7 @@ def _required_time(point: _Point, name: str, place: int) -> datetime:
 
 
 def _number(text: str | None, name: str, place: int, column: str, unit: str) -> float:
-    """The number; NaN if the file has `nan` or `inf`, which is flagged."""
+    """Number in a text; NaN for `nan` and `inf`, which are flagged; FieldDataError if it is not a number."""
     value = math.nan if text is None else number(text)
     if math.isnan(value) and (text is None or not is_not_finite(text)):
         allowed = Message("a finite number in {unit}", unit=unit)

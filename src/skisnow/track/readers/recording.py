@@ -98,7 +98,7 @@ class TrackProblem:
         return self.text(current_language())
 
     def text(self, language: str) -> str:
-        """The same in a language."""
+        """The sentence in a language."""
         return Message("error {code}: {problem}", code=self.code, problem=self.sentence).text(language)
 
     @property
