@@ -238,7 +238,7 @@ class SeriesFit:
         return _Posterior(Cgg * right_g + Cgd * reduced.right_d, Cgd * right_g + Cdd * reduced.right_d, Cgg, Cgd, Cdd)
 
     def _spread_rounds(self, reduced: _Reduced) -> tuple[_Posterior, float]:
-        """EM of τ, σ_g and g_0 at the present linearisation; the last posterior and the last relative change."""
+        """Estimate τ, σ_g and g_0 by EM at this linearisation; the last posterior and relative change."""
         for _ in range(_SPREAD_ROUNDS):
             posterior = self._posterior(reduced)
             previous, self._spreads = self._spreads, self._spreads_of(posterior)
@@ -287,7 +287,7 @@ class SeriesFit:
         return FittedSeries(of_series, misfit, free, self._spreads, self._freedom(line, posterior, free))
 
     def _freedom(self, line: _Line, posterior: _Posterior, free: FloatArray) -> Freedom:
-        """Twice the Fisher information of the logarithm of each spread, of prior and data."""
+        """Degrees of freedom of each spread: twice the Fisher information of its logarithm (prior and data)."""
         priors, sums = self._priors, self._readings.sums
         of_d = 1.0 - posterior.Cdd / self._to_series(self._spreads.seating2)
         of_g = 1.0 - posterior.Cgg / self._to_series(self._spreads.layering2)

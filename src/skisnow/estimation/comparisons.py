@@ -45,7 +45,7 @@ class Comparison:
     own: CampaignMean
 
     def as_dict(self) -> dict[str, Any]:
-        """Give the entry of results.json."""
+        """JSON entry of results.json."""
         own = self.own
         published: dict[str, Any] = (
             {"range": list(self.published)} if isinstance(self.published, tuple) else {"value": self.published}
@@ -130,7 +130,7 @@ def compare_with_published(
     angle_term: tuple[CampaignMean, CampaignMean],
     shear_density: CampaignMean,
 ) -> tuple[Comparison, ...]:
-    """The published ranges, Federolf 2006 converted, Eqns 11 and 14, Domine 2011; units as in the keys."""
+    """Comparisons with published values: ranges, Federolf 2006, Eqns 11 and 14, Domine 2011; units as in the keys."""
     H_V, S_f = "H_V_N_per_mm3", "S_f_N_per_mm2"
     paper, paper_range = moessner_2013.SOURCE, Message("{source}, range", source=moessner_2013.SOURCE)
     rows = [

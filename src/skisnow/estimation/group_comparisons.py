@@ -133,7 +133,7 @@ def compare_groups(data: Measured, by: str, difference: float = DIFFERENCE) -> t
 def compare_campaign(
     campaign: Campaign, penetration: Screened | None, shear: Screened | None, *, difference: float = DIFFERENCE
 ) -> tuple[GroupComparison, ...]:
-    """Every pair of sites, tools, observers and days, for H_V and S_f of the used experiments."""
+    """Comparisons of every pair of sites, tools, observers and days, for H_V and S_f of used experiments."""
     quantities = []
     if penetration is not None and penetration.estimates is not None and campaign.penetration is not None:
         H = penetration.estimates.hardness["H_V"]

@@ -266,7 +266,7 @@ class _GrowthFit:
         return at_end & (growth > low) & (growth < high), answer
 
     def _line(self) -> tuple[FloatArray, tuple[FloatArray, ...], FloatArray, FloatArray, FloatArray]:
-        """Residual, derivatives of the depth by the three, F/(dF/de), weight, and how far the depth moved, by reading.
+        """Of each reading: residual, derivatives by (ln H, γ, δ), F/(dF/de), weight, and change of the depth.
 
         One Newton step of ln F over ln e towards the depth that the law has under the load.
         """

@@ -33,7 +33,7 @@ _PAIRS: Final = np.triu_indices(4)
 
 @dataclass(frozen=True, slots=True)
 class NestedRows:
-    """The F test of a reduced against a full row; F and p are NaN between equal rows."""
+    """F test of a reduced model against a full one; F and p are NaN between equal models."""
 
     full: Model
     reduced: Model
@@ -105,7 +105,7 @@ class _HardnessRows:
 
     @classmethod
     def of(cls, readings: Readings, symbol: str, hardness: FloatArray) -> _HardnessRows:
-        """Rows with fitted parameters of the hardness with this symbol, of which each series has a value (SI)."""
+        """Rows of models with fitted parameters that use this hardness; `hardness`: its value of each series (SI)."""
         basis = end_basis(readings, hardness)
         X, pairs = basis.columns, zip(*_PAIRS, strict=True)
         sums = [readings.sums(X[:, i] * X[:, j]) for i, j in pairs]

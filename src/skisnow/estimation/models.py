@@ -140,11 +140,11 @@ class EndBasis:
         return self.high <= self.low
 
     def projection(self, model: Model) -> FloatArray:
-        """(4, p): how the fitted parameters of a model make the four end values."""
+        """Matrix (4, p) from the fitted parameters of a model to the four end values."""
         return _projection(model.a, model.b, self.flat)
 
     def offset(self, model: Model) -> FloatArray:
-        """The end values that a model fixes: b = 1 in the row where nothing is fitted."""
+        """End values (4,) that a model fixes: b = 1 if nothing is fitted, otherwise 0."""
         return np.array([0.0, 0.0, 1.0, 1.0]) if model.b == "one" else np.zeros(4)
 
     def coefficients(self, ends: FloatArray) -> FloatArray:
@@ -178,7 +178,7 @@ def end_basis(readings: Readings, hardness: FloatArray) -> EndBasis:
 
 
 def weighted_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b: FloatArray) -> FloatArray:
-    """Columns (n, 4) H a (1-t), H a t, H b (1-t), H b t; a and b are area and volume or their growth with depth."""
+    """Columns (n, 4) H a (1-t), H a t, H b (1-t), H b t; a and b: area and volume, or their derivatives by depth."""
     low, high = readings.edge_angle.min(), readings.edge_angle.max()
     t = (readings.angle_of_reading - low) / (high - low) if high > low else np.zeros(readings.n)
     H = hardness[readings.series]

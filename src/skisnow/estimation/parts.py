@@ -212,7 +212,7 @@ def _snow_data_sites(campaign: Campaign) -> dict[str, set[str]]:
 
 
 def _similar_name_notes(campaign: Campaign) -> Iterator[str]:
-    """Names that differ only by capitals and spaces."""
+    """Sentences about site names that differ only by capitals and spaces."""
     names: dict[str, set[str]] = {}
     for site in _test_sites(campaign).union(*_snow_data_sites(campaign).values()):
         names.setdefault("".join(site.split()).casefold(), set()).add(site)

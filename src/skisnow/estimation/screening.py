@@ -80,7 +80,7 @@ def screened_shear(campaign: Campaign) -> Screened:
 
 
 def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]) -> BoolArray:
-    """Used series with |ln H_V - the site's median| > 3.5 × 1.4826 × MAD, at sites with five or more used series."""
+    """Mask of used series with |ln H_V - site median| > 3.5 × 1.4826 × MAD, at sites with five or more used series."""
     outlier = np.zeros(len(hardness), dtype=bool)
     logs = np.log(hardness, out=np.zeros_like(hardness), where=used)
     names, site_of = index_names(site)

@@ -217,7 +217,7 @@ def _cone_area(profile: SnowMicroPenProfile) -> float:
 
 
 class _Windows(NamedTuple):
-    """Values of the windows, NaN where the shot noise of one is not determined; size and step in samples."""
+    """Values of a recording's windows, NaN where the shot noise is not determined; size and step in samples."""
 
     size: int
     step: int
