@@ -134,7 +134,7 @@ SPREADS: Final = ("depth_sd_mm", "width_sd_mm", "turn_radius_sd_m")
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class MeasuredGrooves(ShownFields):
-    """Places along a track, (n,) each, in m.
+    """Depth, width and turn radius (m) of grooves measured at n places along a track, (n,) each.
 
     name: Name of the file.
     depth, width: Depth of the remaining groove, and its width across it in the snow's surface; NaN if not measured.

@@ -83,7 +83,7 @@ class GrooveResiduals:
         return [self._residuals_of(values) for values in many]
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
-        """The three quantities, place by place."""
+        """Measured and computed depths, widths and radii, place by place."""
         groove = self.groove(values)
         if groove is None:
             return ()

@@ -84,7 +84,7 @@ class PhotoCellTimes:
         return [np.concatenate(parts) for parts in residuals]
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
-        """Times over the distance."""
+        """Measured and computed passage times of each run, over the distance (m)."""
         fits = []
         for run in self.cells.runs:
             station, time, sd = self._cells_after_start(run)

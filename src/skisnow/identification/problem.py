@@ -40,12 +40,12 @@ class Problem:
 
     @property
     def points(self) -> int:
-        """Points of all data."""
+        """Number of points of all data."""
         return sum(observation.points for observation in self.observations)
 
     @property
     def nuisances(self) -> int:
-        """Numbers fitted inside the residuals."""
+        """Number of values that are fitted inside the residuals."""
         return sum(observation.nuisances for observation in self.observations)
 
     @property

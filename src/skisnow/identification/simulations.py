@@ -138,7 +138,7 @@ class RunSimulation:
 
 
 def _row(run: Run, times: FloatArray) -> Row:
-    """Row of a run; after its end it is extrapolated straight at its last velocity."""
+    """Outcome, places (m) and speeds (m/s) of a run at the times (s); after its end extrapolated straight."""
     finite = np.isfinite(run.place).all(axis=1) & np.isfinite(run.velocity).all(axis=1)
     count = len(run.time) if finite.all() else int(np.argmin(finite))
     if count < 2:
