@@ -34,7 +34,7 @@ class StudyModel(Protocol):
 
     @property
     def results(self) -> tuple[str, ...]:
-        """The columns of results."""
+        """Names of the columns of results."""
         ...
 
     def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
