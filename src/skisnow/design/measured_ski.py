@@ -283,7 +283,7 @@ class _SkiMaker:
 def stiffness_of_tests(
     station: FloatArray, span: FloatArray, compliance: FloatArray, error: FloatArray, *, bend: bool
 ) -> Stiffness:
-    """EI or GJ from tests about stations.
+    """EI or GJ (N m²) at the stations of bend or torsion tests, from 1/EI or 1/GJ linear between the stations.
 
     station, span: middle and length of each test (m), stations falling.
     compliance, error: deflection over load (m/N) or twist over moment (rad/(N m)), and its standard error.
