@@ -70,7 +70,7 @@ class FlexibleSki(ShownFields):
             ).tag("wrong_shape", n_free=len(free), n=n)
 
     def compiled(self) -> core.FlexibleSki:
-        """The same as an object of the core."""
+        """The ski as the core's type."""
         boot, axes, unknown, mass, stiffness, coupling = (
             np.ascontiguousarray(each, float)
             for each in (self.boot, self.axes, self.unknown, self.mass, self.stiffness, self.coupling)
@@ -117,7 +117,7 @@ class Body(ShownFields):
             raise ParameterError("Body: it needs one ski or more").tag("missing")
 
     def compiled(self) -> core.Body:
-        """The same as an object of the core."""
+        """The body as the core's type."""
         inertia, moment, gravity = (
             np.ascontiguousarray(each, float) for each in (self.inertia, self.first_moment, self.gravity)
         )
