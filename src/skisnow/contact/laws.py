@@ -48,7 +48,7 @@ class Laws(Shown):
 
 
 class FrictionCallback:
-    """Coefficient μ of a law that the compiled core calls with arrays of speeds (m/s)."""
+    """Function for the compiled core: coefficient μ of a friction law at arrays of speeds (m/s)."""
 
     def __init__(self, law: FrictionLaw) -> None:
         self.law = law
@@ -59,7 +59,7 @@ class FrictionCallback:
 
 
 class StrengthCallback:
-    """Strength and thrust (N/m²) of a law, (2, n), for depths (m) and edge angles (rad); 0 where no snow is met.
+    """Function for the core: strength and thrust (N/m²), (2, n), at depths (m) and edge angles (rad); 0 above the snow.
 
     Values that are not finite are recorded in ``refused``: a trial step may reach a pose that no ski reaches.
     """
