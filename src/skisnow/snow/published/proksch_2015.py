@@ -42,7 +42,7 @@ def density_of_form(
 
 
 def specific_surface_area(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-    """SSA in m²/kg from F (N) and L (m), with the density above.
+    """SSA (m²/kg) from median force F (N) and element size L (m), with the density of this publication.
 
     >>> round(float(specific_surface_area(np.array(1.0), np.array(0.5e-3))), 2)
     8.97
