@@ -56,7 +56,7 @@ class Tool(abc.ABC):
 
     @abc.abstractmethod
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """Growth of the contact area with depth, dA/de (m), as the error propagation needs it."""
+        """Derivative dA/de (m) of the contact area by the depth, for the propagation of errors."""
 
     @abc.abstractmethod
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
@@ -178,7 +178,7 @@ class PlainWedge(Tool):
 
 @dataclass(frozen=True, slots=True)
 class Disc(Tool):
-    """A flat disc of diameter d: A = π d²/4, V = A e. The edge angle has no meaning for it and is not looked at.
+    """A flat disc of diameter d: A = π d²/4, V = A e. The edge angle is ignored.
 
     >>> round(float(Disc(diameter=0.1).displaced_volume(0.02, 0.0)) * 1e6, 3)  # cm³
     157.08
