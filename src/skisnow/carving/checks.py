@@ -28,7 +28,7 @@ def require_kinds(ski: object, snow: object) -> None:
 
 
 def require_ranges(edge_angle: float, load: float, unloading_ratio: float, moment: float) -> None:
-    """Refuse a number outside its range."""
+    """Reject an edge angle, load, unloading ratio or moment outside its range."""
     if not 0.0 <= edge_angle <= GREATEST_EDGE_ANGLE:
         raise ParameterError(
             "edge_angle is {edge_angle} rad; it must be from 0 to {greatest_edge_angle:.3f} rad (85 degrees)"

@@ -223,7 +223,7 @@ class CarveQuestion:
         require_declared(self)
 
     def changed(self, ski: Ski) -> Ski:
-        """The ski with the factors of the question; the same object if all are 1."""
+        """The ski with the factors of the question applied; the same object if all factors are 1."""
         factors = {column: float(getattr(self, name)) for name, column in SKI_FACTORS.items()}
         if all(factor == 1.0 for factor in factors.values()):
             return ski
