@@ -116,7 +116,7 @@ class Column:
     listed: tuple[Any, ...] = ()
 
     def values(self) -> list[Any]:
-        """The values of all points."""
+        """Values of all points, with indices replaced by the listed values."""
         return [self.listed[place] for place in self.numbers] if self.listed else self.numbers.tolist()
 
     def __getitem__(self, number: int) -> Any:
