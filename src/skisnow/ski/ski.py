@@ -336,7 +336,7 @@ def _require_tables(ski: Ski) -> None:
 
 
 def _require_edge(edge: EdgeShape, *, waist: float) -> None:
-    """Reject an edge that cannot be ground so, its width against the waist (m)."""
+    """Reject an edge shape that cannot be ground on a ski with this waist (m)."""
     bevel, width, side, radius = edge
     if not 0.0 <= bevel <= GREATEST_BEVEL:
         raise ParameterError("base_bevel is {bevel!r} rad; it must be 0 to {limit}. Give it in radians.").tag(
