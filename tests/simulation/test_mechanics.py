@@ -11,10 +11,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from skisnow.scenario import Plane, Profile, RigidSledge
-from skisnow.simulation.run_setup import Setup, laid_out
+from skisnow.simulation.run_setup import Setup, laid_out, weight_meets_base
 from skisnow.simulation.simulated_run import _groove
 from skisnow.simulation.sledge_body import SledgeInertia, base_lateral, base_normal, rotation, sledge_inertia
-from skisnow.simulation.static_start import _carried_across, no_start, weight_meets_base
 from skisnow.ski.beam import ClampedSki, clamped
 from tests.carving.synthetic import plain_ski, shovel
 from tests.ski.beam.dense import beam_at, dense
@@ -157,50 +156,6 @@ def test_an_edged_base_goes_down_on_the_left() -> None:
 
 
 TAN_20 = math.tan(math.radians(20.0))
-
-
-def stood(hardness: float, edge_angle_deg: float) -> Any:
-    """Skis 1.7 m long and 70 mm wide, 0.5 m apart, under 425 N."""
-    scenario = SimpleNamespace(
-        ski=SimpleNamespace(
-            width=np.array([0.06, 0.07]), station=np.array([0.9, 0.0, -0.8]), contact_points=(0.8, -0.7)
-        ),
-        sledge=SimpleNamespace(edge_angle=math.radians(edge_angle_deg), stance_width=0.5, centre_of_mass=(0.0, 0.5)),
-        contact=SimpleNamespace(hardness_at=lambda x, y: hardness + x + y),
-        start=SimpleNamespace(x=0.0, y=0.0),
-    )
-    return SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0}, drive=object())
-
-
-def carried(hardness: float, edge_angle_deg: float) -> tuple[float, float]:
-    """To the right and to the left (m)."""
-    return _carried_across(stood(hardness, edge_angle_deg))
-
-
-def test_edged_skis_carry_from_their_edge_to_the_waterline_and_in_soft_snow_and_flat_the_whole_base_carries() -> None:
-    """4 · 425 N/(12.5 MN/m³ · 0.8 · 1.7 m) = (10 mm)²: 20 mm of the base are wet, on the side of the edge."""
-    inner, outer = 0.25 + 0.02 - 0.035, 0.25 + 0.035
-    assert carried(12.5e6, 45.0) == pytest.approx((inner, outer))
-    assert carried(12.5e6, -45.0) == pytest.approx((outer, inner))
-    # where the tangent is a quarter it is half as deep and twice as wide
-    assert carried(12.5e6, math.degrees(math.atan(0.25))) == pytest.approx((inner + 0.02, outer))
-    for angle in (45.0, -45.0, 0.0):
-        assert carried(1e5, angle) == pytest.approx((0.285, 0.285))
-
-
-@pytest.mark.parametrize(
-    ("ahead", "left", "told"),
-    [
-        (0.0, 0.29, "0.285 m"),
-        (0.0, -0.24, "0.235 m"),
-        (0.81, 0.28, "0.8 m there"),
-        (-0.71, -0.23, "0.7 m there"),
-        (0.79, 0.28, "at rest"),
-    ],
-)
-def test_place_of_the_weight_is_reported(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skisnow.simulation.static_start.weight_meets_base", lambda _: (ahead, left))
-    assert told in str(no_start(stood(12.5e6, 45.0)))
 
 
 @pytest.mark.parametrize(

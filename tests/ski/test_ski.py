@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -175,29 +174,7 @@ def test_least_squares_where_points_scatter() -> None:
     assert radius_of_least_squares_circle(x, y) == pytest.approx(direct.x[2], rel=1e-5)
 
 
-DESIGN = """{"board": {"name": "flat", "nose length": 20, "effective edge length": "%s", "tail length": 18.5,
-"sidecut radius": "%s", "taper": "2mm", "waist width": "7.2cm", "edge shape": {"type": "Basic Arc"}}}"""
 TOML = "mass_kg = 2.2\nEI_N_m2 = [100, 440, 100]\nGJ_N_m2 = [60, 175, 60]\n"
-
-
-def most_bytes(path: Path) -> int:
-    tracemalloc.start()
-    try:
-        with pytest.raises(ParameterError, match=path.parent.name):
-            read_ski(path)
-        return tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-
-
-@pytest.mark.parametrize(("edge", "radius"), [("900m", "900m"), ("120cm", "14m")])
-def test_the_shape_of_another_program(tmp_path: Path, edge: str, radius: str) -> None:
-    (tmp_path / "ski-def.json").write_text(
-        (DESIGN % (edge, radius)).replace('"nose length": 20', '"nose length": "1e6m"')
-    )
-    path = tmp_path / "ski.toml"
-    path.write_text('shape = "ski-def.json"\n' + TOML)
-    assert most_bytes(path) < 10_000_000
 
 
 def test_a_table_that_is_no_plain_file(tmp_path: Path) -> None:

@@ -115,7 +115,6 @@ def beside(column: str, key: str, value: str) -> Coded:
         ({"tail_overhang_mm": 20}, coded("contradiction", key="tail_overhang_mm", value="20")),
         ({"mass_kg": 3.0}, coded("out_of_range", value="3.0")),
         ({"rigid": True}, coded("contradiction", key="EI_N_m2")),
-        ({"shape": "ski-def.json"}, coded("contradiction", key="table", value="'rows.csv'", other="shape")),
     ],
 )
 def test_keys_that_contradict_the_table(with_table: Written, changes: dict[str, object], named: str | Coded) -> None:

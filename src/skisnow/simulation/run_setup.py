@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, SolverError
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
@@ -218,6 +218,34 @@ def set_up(
     setup.static_residual = setup.dynamics.find_equilibrium()
     setup.dynamics.begin(np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return setup
+
+
+def no_start(setup: Setup) -> SolverError:
+    """Error for a sledge without an equilibrium, with the place of its weight and the reach of its skis."""
+    ahead, left = weight_meets_base(setup)
+    front, rear = setup.scenario.ski.contact_points
+    side = 0.5 * (setup.scenario.sledge.stance_width + float(setup.scenario.ski.width.max()))
+    return SolverError(
+        "the sledge falls over at its start: on this slope, at this heading, its weight passes {ahead:.3g} m ahead of "
+        "the boots' middle and {left:.3g} m to its left. The skis carry from {rear:.3g} to {front:.3g} m ahead and up "
+        "to {side:.3g} m to each side, less where the snow gives way. Lower sledge.centre_of_mass_height_m, widen "
+        "sledge.stance_width_m, bring start.heading_deg nearer to 0, or use harder snow"
+    ).tag("no_start", ahead=ahead, left=left, front=front, rear=rear, side=side)
+
+
+def weight_meets_base(setup: Setup) -> tuple[float, float]:
+    """Point where the vertical through the centre of mass meets the bases' level: ahead and left (m).
+
+    As the sledge was set down, before it leans.
+    """
+    start = setup.scenario.start
+    normal = setup.slope_normal(start.x, start.y)
+    down, aside = down_and_left(normal)
+    forward = math.cos(start.heading) * down + math.sin(start.heading) * aside
+    gravity, centre = setup.dynamics.body.gravity, setup.dynamics.body.first_moment / setup.dynamics.body.mass
+    pulls = np.array([gravity @ forward, gravity @ np.cross(normal, forward), gravity @ normal])
+    ahead, left, _ = centre - pulls * centre[2] / pulls[2]
+    return float(ahead), float(left)
 
 
 def _boot_drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:

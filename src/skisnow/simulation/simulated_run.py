@@ -23,9 +23,8 @@ from ..skier.failure import cause_of
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_record import Record
-from .run_setup import AT_REST, PITCHED, TIPPED, Setup, set_up
+from .run_setup import AT_REST, PITCHED, TIPPED, Setup, no_start, set_up
 from .run_summary import GatesAhead, run_gates
-from .static_start import no_start
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""

@@ -110,9 +110,6 @@ class SkiFile:
     table: Annotated[
         str | None, Quantity("table", "CSV file with columns of the next section, a path from this file", origin="none")
     ] = None
-    shape: Annotated[
-        str | None, Quantity("shape", "design file of MonkeyCAM, see below, a path from this file", origin="none")
-    ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

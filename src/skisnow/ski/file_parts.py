@@ -20,7 +20,6 @@ from .assembling import ArcOutline, assembled_ski, stiffness_table, width_of_tab
 from .file_keys import BASE, LISTS, RIGID, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
 from .file_values import checked, warn_of_unusual
 from .layout import BaseShape, Layout, StationFunction, layout_of_lengths
-from .monkeycam import monkeycam_shape
 from .ski import Ski
 from .table_file import StationTable
 
@@ -52,10 +51,10 @@ class FileValues:
     said: SkiFile
     table: dict[str, StationTable] = field(default_factory=dict)
 
-    def beside(self, key: str) -> Path | None:
-        """Path of the file that the key names, relative to the ski file's folder; None if the key is missing."""
-        name = getattr(self.said, key)
-        return self.file.parent / name if name else None
+    @property
+    def table_file(self) -> Path | None:
+        """Path of the table, counted from this file's folder; None without one."""
+        return self.file.parent / self.said.table if self.said.table else None
 
     def needed(self, key: str) -> float:
         """The number in SI of a key that the file must have; ParameterError without it."""
@@ -92,15 +91,14 @@ class FileValues:
         """
         if self.table.keys() >= set(STIFFNESSES):
             self.refuse_together(["stiffness_station_mm"], Message("a table with both stiffnesses"))
-        of_shape = "shape" in self.values
-        layout, width, name = self._outline_from_shape_file() if of_shape else self._outline_from_ski_file()
         said = self.said
+        layout = self._lengths_from_table() if self.table else self._lengths_from_keys()
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
         ski = assembled_ski(
             layout,
-            name=said.name or name,
+            name=said.name or self.file.stem,
             source=said.source or f"file {self.file.name}",
-            width=width,
+            width=self._width(layout),
             base=self._base(),
             bending_stiffness=self._stiffness("EI_N_m2", layout),
             torsional_stiffness=self._stiffness("GJ_N_m2", layout),
@@ -111,7 +109,7 @@ class FileValues:
             side_edge=said.side_edge,
             edge_radius=said.edge_radius,
             stations=self.table["station_m"].station if self.table else None,
-            keys=None if self.table or of_shape else dict(self.values),
+            keys=None if self.table else dict(self.values),
             like=like,
         )
         # a stated mass must be the integral of the mass per length
@@ -124,21 +122,12 @@ class FileValues:
         self._warn_of_lengths(ski)
         return ski
 
-    def _outline_from_shape_file(self) -> tuple[Layout, StationFunction, str]:
-        """Tip, tail and lengths, width along the ski, and name: from a shape file of MonkeyCAM."""
-        outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
-        self.refuse_together(outlined, "shape")
-        file = self.beside("shape") or self.file
-        name, outline = monkeycam_shape(file, running_length=self.said.running_length)
-        return outline.layout, outline.width_at, name
-
-    def _outline_from_ski_file(self) -> tuple[Layout, StationFunction, str]:
-        """Tip, tail and lengths, width along the ski, and name: from the ski file's table, otherwise from its keys."""
-        layout = self._lengths_from_table() if self.table else self._lengths_from_keys()
+    def _width(self, layout: Layout) -> StationFunction:
+        """Width along the ski: from the ski file's table, otherwise from its keys."""
         if "width_mm" in self.table:
             column = Message("the column {column}", column="width_mm")
             self.refuse_together((*WIDTHS, TIP_END), column)
-            return layout, width_of_table(self.table["width_mm"], layout), self.file.stem
+            return width_of_table(self.table["width_mm"], layout)
         tip, waist, tail = (self.needed(key) for key in WIDTHS)
         for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
             if waist > width:
@@ -151,8 +140,7 @@ class FileValues:
             raise ParameterError(
                 "tip_end_width_mm is {value}; allowed is at most tip_width_mm, {width:g}. Correct one of them."
             ).tag("out_of_range", value=self.shown(TIP_END), width=tip * 1e3)
-        outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end)
-        return layout, outline.width_at, self.file.stem
+        return ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end).width_at
 
     def _lengths_from_keys(self) -> Layout:
         length = self.needed("length_mm")

@@ -63,11 +63,6 @@ def read_ski(name_or_path: str | Path) -> Ski:
     path = Path(name_or_path)
     if str(name_or_path) in ski_names():
         return ski_named(str(name_or_path))
-    if path.suffix.lower() == ".json":
-        raise ParameterError(
-            "{path} has a shape but no stiffness and no mass. Write a TOML file with shape = {file!r}, EI_N_m2, "
-            "GJ_N_m2 and mass_kg, and read that."
-        ).tag("no_stiffness", path=path, file=path.name)
     if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or is_file(path):
         return _read_ski_file(path)
     raise _no_such_ski(str(name_or_path))
@@ -121,14 +116,12 @@ def _no_such_ski(name: str) -> ParameterError:
 
 def _read_ski_file(path: Path) -> Ski:
     values = file_values(path)
-    table, shape = values.beside("table"), values.beside("shape")
+    table = values.table_file
     columns = read_table(table) if table else {}
     try:
         return replace(values, table=columns).ski()
     except ParameterError as error:
-        if any(str(error).startswith(str(file)) for file in (path, shape) if file):
-            raise
-        raise error.at(path) from error
+        raise (error if str(error).startswith(str(path)) else error.at(path)) from error
 
 
 MADE_OF_KEYS: Final = weakref.WeakKeyDictionary[Ski, SkiFile]()
@@ -258,5 +251,5 @@ class Sources:
         if word in ski_names():
             return None
         place = self.path(word)
-        looks_like_one = Path(word).suffix.lower() in (".toml", ".json") or Path(word).name != word
+        looks_like_one = Path(word).suffix.lower() == ".toml" or Path(word).name != word
         return place if looks_like_one or is_file(place) else None

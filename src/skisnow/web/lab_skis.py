@@ -151,10 +151,6 @@ def _require_no_other_file(text: str) -> None:
         keys = toml_values(text)
     except ContentError:
         return  # the reader reports it with its line
-    if "shape" in keys:
-        raise ParameterError(
-            "{file}: a shape of another program cannot be read here. Use read_ski or the command line"
-        ).tag("foreign_shape", file=FILE)
     if keys.get("table", TABLE) != TABLE:
         raise ParameterError(
             '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"'
@@ -168,13 +164,6 @@ def _without_folder(folder: str, message: str) -> str:
 
 NAME: Final = "name"
 LISTS: Final = ("EI_N_m2", "GJ_N_m2")
-STIFFNESS: Final = {
-    "mass_kg": Message("Mass of one ski (kg)"),
-    "camber_mm": Message("Camber (mm)"),
-    "EI_N_m2": Message("EI (N m²) from tip to tail"),
-    "GJ_N_m2": Message("GJ (N m²) from tip to tail"),
-}
-"""Labels of the quantities that a design of a shape does not contain."""
 MEASURED: Final = {
     "length_mm": Message("Length (mm)"),
     "running_length_mm": Message("Running length (mm)"),
@@ -182,7 +171,10 @@ MEASURED: Final = {
     "tip_width_mm": Message("Width at the tip (mm)"),
     "waist_width_mm": Message("Width at the waist (mm)"),
     "tail_width_mm": Message("Width at the tail (mm)"),
-    **STIFFNESS,
+    "mass_kg": Message("Mass of one ski (kg)"),
+    "camber_mm": Message("Camber (mm)"),
+    "EI_N_m2": Message("EI (N m²) from tip to tail"),
+    "GJ_N_m2": Message("GJ (N m²) from tip to tail"),
 }
 """Labels of the measured quantities of a ski with three widths."""
 OPTIONAL: Final = ("camber_mm",)
@@ -215,11 +207,10 @@ def _numbers(words: str, text: str) -> list[float]:
     return [typed_number(words, part.removesuffix(",")) for part in parts or [""]]
 
 
-def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], further: Mapping[str, str], limits: Limits) -> SkiTexts:
+def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], limits: Limits) -> SkiTexts:
     """Read the files of a ski in a separate process.
 
-    uploads: names and contents of a TOML file with its table, or of a design of MonkeyCAM.
-    further: typed values for a design, by the keys of `STIFFNESS`.
+    uploads: names and contents of a TOML file with its table.
     Raises ParameterError: the files do not contain exactly one ski.
     """
     with TemporaryDirectory(prefix="skisnow-ski-") as folder:
@@ -228,29 +219,22 @@ def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], further: Mapping[st
         for name, content in uploads:
             unpacking.take(PurePosixPath(name.replace("\\", "/")).name, content)
         names = sorted(path.name for path in unpacking.folder.iterdir())
-        return confined(SKI_BOUNDS, read_ski_files, str(unpacking.folder), names, dict(further))
+        return confined(SKI_BOUNDS, read_ski_files, str(unpacking.folder), names)
 
 
-def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]) -> SkiTexts:
+def read_ski_files(folder: str, names: Sequence[str]) -> SkiTexts:
     """Read the ski from a folder of `ski_of_uploads`."""
     files = [name for name in names if name.lower().endswith(".toml")]
-    designs = [name for name in names if name.lower().endswith(".json")]
-    if not files and len(designs) == 1:
-        place = Path(folder) / FILE
-        text = _toml({"shape": designs[0]}, {key: further.get(key, "") for key in STIFFNESS})
-        place.write_text(text, encoding="utf-8", newline="")
-    elif len(files) == 1:
+    if len(files) == 1:
         place = Path(folder) / files[0]
         _require_own_files(place, names)
-    elif not files and not designs and names:
+    elif not files and names:
         raise ParameterError(
             "a table alone states neither length nor mass of a ski; choose it together with a .toml file that names "
             "it (table = '{table}'): “Download the file” on the page gives one to begin with"
         ).tag("table_alone", table=names[0])
     else:
-        raise ParameterError(
-            "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"
-        ).tag("not_one_ski")
+        raise ParameterError("choose one ski: its .toml file with the table that it names").tag("not_one_ski")
     ski, _ = _read_in_folder(place)
     is_whole = len(names) == 1 and files
     text, table = (place.read_text(encoding="utf-8-sig"), "") if is_whole else texts_of_ski(ski)
@@ -260,8 +244,7 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
 def _require_own_files(place: Path, names: Sequence[str]) -> None:
     """Reject a file that names a file outside the upload."""
     keys = toml_values(place.read_text(encoding="utf-8-sig", errors="replace"))
-    for key in ("table", "shape"):
-        if (named := keys.get(key)) is not None and named not in names:
-            raise ParameterError(
-                "{file}: {key} is {needed!r}; choose that file, too, and name it without a folder"
-            ).tag("missing_file", file=place.name, key=key, needed=named)
+    if (named := keys.get("table")) is not None and named not in names:
+        raise ParameterError("{file}: {key} is {needed!r}; choose that file, too, and name it without a folder").tag(
+            "missing_file", file=place.name, key="table", needed=named
+        )

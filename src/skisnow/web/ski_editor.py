@@ -23,7 +23,6 @@ from .lab_skis import (
     MEASURED,
     NAME,
     OPTIONAL,
-    STIFFNESS,
     LabSkis,
     check_ski_texts,
     measured_text,
@@ -248,10 +247,9 @@ def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
     """Add the address that receives skis."""
 
     def store(form: FormData) -> str:
-        missing = Message("no file was chosen; choose the .toml file of a ski, or a design of MonkeyCAM")
+        missing = Message("no file was chosen; choose the .toml file of a ski")
         files = [(file.filename or "", file.file) for file in uploaded_files(form, "files", missing)]
-        further = {key: str(form.get(key, "")) for key in STIFFNESS}
-        texts = ski_of_uploads(files, further, lab.limits)
+        texts = ski_of_uploads(files, lab.limits)
         name = " ".join((str(form.get(NAME, "")) or texts.name).split())
         LabSkis(lab.runs).save_texts(name, texts.text, texts.table)
         return address("/skis", ski=name, added="1")
@@ -318,20 +316,10 @@ class SkiImportForms:
 
 def _file_form() -> None:
     """Form for the files of a ski."""
-    sentence(
-        Message(
-            "The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, which has "
-            "neither mass nor stiffness: type those next to it."
-        ),
-        "quiet",
-    )
+    sentence(Message("The .toml file of a ski and the table that it names."), "quiet")
     with upload_form(SKI_UPLOAD):
         with ui.element("div").classes("acts"):
-            file_input("files", Message("Files of the ski"), "ski-files", 'multiple accept=".toml,.csv,.json"')
+            file_input("files", Message("Files of the ski"), "ski-files", 'multiple accept=".toml,.csv"')
         with ui.element("div").classes("acts"):
             text_input(NAME, Message("Another name for it"), f"ski-{NAME}")
-        with folded(Message("With a file of MonkeyCAM")):
-            for key, words in STIFFNESS.items():
-                with ui.element("div").classes("acts"):
-                    text_input(key, words, f"ski-{key}", "" if key in LISTS else "inputmode=decimal")
         submit_button(Message("Add the files"))

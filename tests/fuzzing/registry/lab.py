@@ -29,7 +29,7 @@ from ..texts import TABLE, TEXT
 from ..trees import JSON, TOML
 from .field import _campaign
 from .motion import run_files
-from .scenario import _DESIGN, _SKI_TABLE, _WITH_TABLE
+from .scenario import _SKI_TABLE, _WITH_TABLE
 
 _LIMITS = Limits(upload_bytes=10_000_000, unpacked_bytes=20_000_000, files=50)
 _TRACK = b"time_s,x_m,y_m,z_m\n" + b"".join(b"%.1f,%d,0.5,0\n" % (0.1 * i, i) for i in range(12))
@@ -166,15 +166,8 @@ READERS = (
     ),
     Reader(
         name="uploaded ski.toml", target="ski.toml", files=lambda: {"ski.toml": _WITH_TABLE, "table.csv": _SKI_TABLE},
-        read=lambda folder: read_ski_files(str(folder), ["ski.toml", "table.csv"], {}), mutations=TOML,
+        read=lambda folder: read_ski_files(str(folder), ["ski.toml", "table.csv"]), mutations=TOML,
         covers=("web.lab_skis:read_ski_files", "web.lab_skis:_require_own_files"),
-    ),
-    Reader(
-        name="uploaded ski-def.json", target="ski-def.json", files=lambda: {"ski-def.json": _DESIGN},
-        read=lambda folder: read_ski_files(
-            str(folder), ["ski-def.json"], {"mass_kg": "2", "EI_N_m2": "100 440 100", "GJ_N_m2": "60 175 60"}
-        ),
-        mutations=JSON, covers=("web.lab_skis:read_ski_files",),
     ),
     Reader(
         name="job.json", target="run-1/job.json", files=_job_files, read=_read_jobs, mutations=JSON,

@@ -49,14 +49,7 @@ table = "table.csv"
 GJ_N_m2 = [60, 140, 175, 140, 60]
 camber_mm = 7
 """
-_WITH_SHAPE = (
-    b'shape = "ski-def.json"\nmass_kg = 2.2\nEI_N_m2 = [100, 440, 100]\nGJ_N_m2 = [60, 175, 60]\ncamber_mm = 7\n'
-)
 _SKI_TABLE = b"station_m,width_mm,EI_N_m2\n0.8,100,60\n0.4,85,250\n0,68,440\n-0.4,80,250\n-0.8,100,60\n"
-_DESIGN = b"""{"board": {"name": "flat", "nose length": 20, "effective edge length": "120cm", "tail length": 18.5,
-"sidecut radius": "14m", "taper": "2mm", "waist width": "7.2cm", "stance setback": 2.5, "splitboard": false,
-"edge shape": {"type": "Basic Arc"}}}
-"""
 _IDENTIFY = b"""
 [identify]
 clock = "free"
@@ -180,7 +173,6 @@ def _geotiff() -> dict[str, bytes]:
 
 _SLALOM = scenario_text("slalom-20-gates").encode()
 _TABLED = {"ski.toml": _WITH_TABLE, "table.csv": _SKI_TABLE}
-_SHAPED = {"ski.toml": _WITH_SHAPE, "ski-def.json": _DESIGN}
 READERS = (
     single_file("scenario.toml", _SLALOM, load_scenario, TOML, "scenario.reading:load_input"),
     Reader(
@@ -199,10 +191,6 @@ READERS = (
     Reader(
         name="ski table.csv", target="table.csv", files=lambda: _TABLED, mutations=TABLE,
         read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.table_file:_lines",),
-    ),
-    Reader(
-        name="ski-def.json", target="ski-def.json", files=lambda: _SHAPED, mutations=JSON,
-        read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.monkeycam:_read_board",),
     ),
     single_file("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_read_results"),
     single_file("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),

@@ -1,7 +1,6 @@
 """A measured ski that comes in, and the skis of the lab."""
 
 import io
-import json
 import tomllib
 import warnings
 from collections.abc import Mapping
@@ -30,14 +29,6 @@ TYPED = {
     "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
     "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
     "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
-}  # fmt: skip
-DESIGN = {
-    "board": {
-        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
-        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
-        "nose width": "12 cm",
-        "edge shape": {"type": "Basic Arc"},
-    }
 }  # fmt: skip
 TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
 WITH_TABLE = """name = "my slalom"
@@ -110,28 +101,15 @@ def test_a_field_that_is_missing_is_marked_until_it_is_typed(desk: Desk) -> None
 def test_files_are_imported_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
     assert (answer.status_code, added(answer)) == (303, "my slalom")
-    ((bounds, work, _, names, further),) = confined_words
+    ((bounds, work, _, names),) = confined_words
     assert bounds is SKI_BOUNDS
     assert (work, names) == (read_ski_files, ["mine.toml", "rows.csv"])
-    assert further == dict.fromkeys(("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2"), "")
     assert read_ski(saved_place(desk, "my slalom")).name == "my slalom"
     answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  A/1 "})
     assert answer.status_code == 400
     answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  Ä "})
     assert added(answer) == "Ski Ä"
     assert LabSkis(desk.lab.runs).saved() == ["my slalom", "Ski Ä"]
-
-
-def test_a_design_is_imported_with_what_was_typed_beside_it(desk: Desk) -> None:
-    typed = {key: TYPED[key] for key in ("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2")}
-    answer = desk.post("/skis/add", files=files(design_JSON=json.dumps(DESIGN)), data={**typed, "name": "board 1"})
-    assert added(answer) == "board 1"
-    ski = read_ski(saved_place(desk, "board 1"))
-    assert ski.mass == pytest.approx(2.231)
-    assert float(ski.bending_stiffness.max()) == pytest.approx(440.0, rel=1e-3)
-    assert float(ski.torsional_stiffness.max()) == pytest.approx(175.0, rel=1e-3)
-    middle = abs(ski.station).argmin()
-    assert float(ski.width[middle]) == pytest.approx(0.093, abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -158,7 +136,7 @@ def folder_of(folder: Path, texts: Mapping[str, str]) -> list[str]:
 
 def test_a_file_with_its_table_is_written_again(tmp_path: Path) -> None:
     names = folder_of(tmp_path, {"mine.toml": WITH_TABLE, "rows.csv": TABLE})
-    found = read_ski_files(str(tmp_path), names, {})
+    found = read_ski_files(str(tmp_path), names)
     assert found.table.startswith("station_m,")
     assert tomllib.loads(found.text)["table"] == "ski.csv"
     assert texts_of_ski(read_ski(tmp_path / "mine.toml")) == (found.text, found.table)
@@ -168,39 +146,31 @@ def test_a_file_with_its_table_is_written_again(tmp_path: Path) -> None:
     ("texts", "expected"),
     [
         ({}, "not_one_ski"),
-        ({"a.json": "{}", "b.json": "{}"}, "not_one_ski"),
         ({"a.toml": TEXT, "b.toml": TEXT}, "not_one_ski"),
-        ({"a.toml": TEXT, "b.toml": TEXT, "c.json": "{}"}, "not_one_ski"),
         ({"b.csv": TABLE, "a.csv": TABLE}, coded("table_alone", table="a.csv")),
-        ({"a.toml": 'shape = "b.json"'}, "missing_file"),
+        ({"a.toml": 'shape = "b.json"'}, "unknown_name"),
         ({"a.toml": 'table = "b.csv"'}, "missing_file"),
         ({"a.toml": 'table = "../b.csv"', "b.csv": TABLE}, "missing_file"),
         ({"a.toml": TEXT.replace("mass_kg = 2.246", "mass_kg = -1")}, coded("out_of_range", file="a.toml")),
-        ({"a.json": json.dumps(DESIGN)}, "not_a_number"),
+        ({"a.json": "{}"}, "table_alone"),
     ],
 )
 def test_an_invalid_ski_is_rejected(tmp_path: Path, texts: dict[str, str], expected: str | Coded) -> None:
     names = folder_of(tmp_path, texts)
     with raises(ParameterError, expected):
-        read_ski_files(str(tmp_path), names, {})
-
-
-def test_a_design_beside_a_file_that_names_it(tmp_path: Path) -> None:
-    text = 'name = "b"\nshape = "a.json"\nmass_kg = 3\nEI_N_m2 = [400]\nGJ_N_m2 = [200]\n'
-    names = folder_of(tmp_path, {"a.json": json.dumps(DESIGN), "a.toml": text})
-    assert read_ski_files(str(tmp_path), names, {}).name == "b"
+        read_ski_files(str(tmp_path), names)
 
 
 def test_uploads_are_named_without_their_folders(confined_words: list[tuple[object, ...]]) -> None:
     uploads = [("Skis\\of mine/mine.toml", io.BytesIO(WITH_TABLE.encode())), ("rows.csv", io.BytesIO(TABLE.encode()))]
-    found = ski_of_uploads(uploads, {"mass_kg": "1"}, Limits())
+    found = ski_of_uploads(uploads, Limits())
     assert found.name == "my slalom"
-    ((bounds, _, folder, names, further),) = confined_words
+    ((bounds, _, folder, names),) = confined_words
     assert bounds is SKI_BOUNDS
-    assert (names, further) == (["mine.toml", "rows.csv"], {"mass_kg": "1"})
+    assert names == ["mine.toml", "rows.csv"]
     assert not Path(str(folder)).exists()
     with raises(ParameterError, "too_many_files", most=1):
-        ski_of_uploads(uploads, {}, Limits(files=1))
+        ski_of_uploads(uploads, Limits(files=1))
 
 
 @pytest.mark.parametrize("name", ["a", "Ä", "9", "a b-c_d", "x" * 40, "con1", "com", "nothing else", "kž"])
@@ -279,7 +249,7 @@ def test_a_text_is_read_with_its_table_and_its_warnings() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "code"), [('shape = "ski.csv"', "foreign_shape"), ('table = "other.csv"', "wrong_table")]
+    ("line", "code"), [('shape = "ski.csv"', "unknown_name"), ('table = "other.csv"', "wrong_table")]
 )
 def test_a_text_that_names_another_file_is_rejected(line: str, code: str) -> None:
     with raises(ParameterError, code):
