@@ -108,7 +108,7 @@ def without_figures() -> Iterator[None]:
     def empty(drawing: "Drawing") -> Picture:
         svg = f'<svg xmlns="http://www.w3.org/2000/svg"><!-- {next(number)} --></svg>'
         each = svg.encode()
-        return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
+        return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each)
 
     with patch("skisnow.report.figures.drawing.render", empty):
         yield
@@ -116,7 +116,7 @@ def without_figures() -> Iterator[None]:
 
 @contextmanager
 def without_png() -> Iterator[None]:
-    """PNG, PDF and EPS take most of a figure's time: for tests of what SVG and words say."""
+    """PNG and PDF take most of a figure's time: for tests of what SVG and words say."""
     with only_drawn("svg"):
         yield
 

@@ -99,7 +99,7 @@ def test_analyse_writes_the_report(campaign: Path, tmp_path: Path, capsys: pytes
     written = files_below(out)
     assert {"results.json", "report.html"} <= written
     assert any(name.endswith(".svg") for name in written)
-    assert any(name.endswith(".tex") for name in written)
+    assert any(name.startswith("tables/") for name in written)
     assert not [name for name in written if "partial" in name]
     results = json.loads((out / "results.json").read_text(encoding="utf-8"))
     assert results["provenance"]["options"]["geometry"] == "paper"

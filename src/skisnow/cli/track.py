@@ -53,9 +53,7 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         choices=("slalom", "giant-slalom"),
         help="with --course: check the course against the rules of this discipline",
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, EPS, data as CSV) and track.json"
-    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF) and track.json")
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
     parser.set_defaults(run=summarise, parser=parser)
@@ -151,7 +149,7 @@ def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "--out",
         type=Path,
         metavar="DIR",
-        help="write compare.json, report.html and figures (PNG, SVG, PDF, EPS, CSV); of gates their table, too",
+        help="write compare.json, report.html and figures (PNG, SVG, PDF); of gates their table, too",
     )
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
@@ -272,4 +270,4 @@ def _write_comparison(
             pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path)
             write_file(stage.path / "report.html", comparison_page(answer, pictures, verdict=verdict, gaps=gaps))
         write_file(stage.path / "compare.json", f"{json_text(answer)}\n")
-    print(f"Figure: {options.out / 'track_comparison.png'}, and as SVG, PDF, EPS and CSV", file=sys.stderr)
+    print(f"Figure: {options.out / 'track_comparison.png'}, and as SVG and PDF", file=sys.stderr)

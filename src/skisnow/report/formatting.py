@@ -1,4 +1,4 @@
-"""Numbers, dates, rows, JSON, symbols and names of users as text, HTML, LaTeX and text of figures."""
+"""Numbers, dates, rows, JSON, symbols and names of users as text, HTML and text of figures."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from .._support.messages import (
 )
 from .._support.units import Shown
 
-Style: TypeAlias = Literal["typeset", "plain", "latex"]
-"""typeset: in the current language, with Unicode minus and powers; plain: for a terminal; latex: for siunitx."""
+Style: TypeAlias = Literal["typeset", "plain"]
+"""typeset: in the current language, with Unicode minus and powers; plain: for a terminal."""
 
-ABSENT: Final = {"typeset": "–", "plain": "-", "latex": "--"}
+ABSENT: Final = {"typeset": "–", "plain": "-"}
 _SUPERSCRIPTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _SMALLEST_P: Final = 0.001
 _LARGEST_P: Final = 0.99
@@ -47,8 +47,6 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
         return _signed(f"{value:.{max(digits - 1 - exponent, 0)}f}", style)
     if style == "plain":
         return f"{mantissa}e{exponent}"
-    if style == "latex":
-        return rf"\num{{{mantissa}e{exponent}}}"
     return f"{_signed(mantissa, style)}×10{str(exponent).translate(_SUPERSCRIPTS)}"
 
 
@@ -58,9 +56,7 @@ def plain(value: float | None, digits: int = 3) -> str:
 
 
 def _signed(text: str, style: Style) -> str:
-    if style == "typeset":
-        return local_number(text.replace("-", "−"))
-    return rf"\num{{{text}}}" if style == "latex" else text
+    return local_number(text.replace("-", "−")) if style == "typeset" else text
 
 
 def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
@@ -134,7 +130,7 @@ def probability(p: float | None, *, style: Style = "typeset") -> str:
     if _SMALLEST_P <= p <= _LARGEST_P:
         return significant(p, 2, style=style)
     sign, limit = ("<", _SMALLEST_P) if p < _SMALLEST_P else (">", _LARGEST_P)
-    return f"${sign}$ {limit}" if style == "latex" else f"{sign} {_signed(str(limit), style)}"
+    return f"{sign} {_signed(str(limit), style)}"
 
 
 def p_equals(p: float | None) -> str:
@@ -215,40 +211,6 @@ def _time_element(iso_time: str, words: str) -> Markup:
 SYMBOL: Final = re.compile(r"(?:(?<![\w<>/])|(?<=_[A-Za-z0-9]/))([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
 _PLAIN: Final = str.maketrans("−\u00a0\u202f", "-  ")
 _PERCENT: Final = re.compile(r"(?<=\d) %")
-_MATHS: Final = (
-    r"\times \pm \le \ge \approx \rightarrow \vartheta \alpha \beta \gamma \delta \Delta \kappa \mu \rho \sigma \tau"
-)
-_LATEX_SPECIAL: Final = {
-    "\\": r"\textbackslash{}",
-    "{": r"\{",
-    "}": r"\}",
-    "$": r"\$",
-    "&": r"\&",
-    "#": r"\#",
-    "%": r"\%",
-    "_": r"\_",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "[": "{[}",  # after a line break it would start an option, as would a star
-    "*": "{*}",
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "|": r"\textbar{}",
-    '"': r"\textquotedbl{}",
-    "²": r"\textsuperscript{2}",
-    "³": r"\textsuperscript{3}",
-    "⁻": r"\textsuperscript{-}",
-    "°": r"\textdegree{}",
-    "·": r"\textperiodcentered{}",
-    "−": "$-$",
-    "½": r"\textonehalf{}",
-    "–": "--",
-    "\u202f": r"\,",
-    "\n": " ",
-    "\r": " ",
-    **{letter: rf"\textsubscript{{{digit}}}" for digit, letter in enumerate("₀₁₂₃₄₅₆₇₈₉")},
-    **{letter: rf"${command}$" for letter, command in zip("×±≤≥≈→ϑαβγδΔκμρστ", _MATHS.split(), strict=True)},
-}
 
 
 def prose(template: str, **values: Any) -> Markup:
@@ -282,30 +244,6 @@ def terminal_text(sentence: Markup) -> str:
     'H_V is -1 N/mm³'
     """
     return Markup(sentence.replace("<sub>", "_")).striptags().translate(_PLAIN)
-
-
-def latex(text: str) -> str:
-    r"""LaTeX of a text of skisnow, with markup for its symbols.
-
-    >>> latex("S_f in N/mm²")
-    '$S_\\mathrm{f}$ in N/mm\\textsuperscript{2}'
-    """
-    pieces, end = [], 0
-    for symbol in SYMBOL.finditer(text):
-        pieces += [latex_escaped(text[end : symbol.start()]), rf"${symbol[1]}_\mathrm{{{symbol[2]}}}$"]
-        end = symbol.end()
-    return "".join([*pieces, latex_escaped(text[end:])])
-
-
-def latex_escaped(text: str) -> str:
-    r"""LaTeX of a text from a user.
-
-    >>> latex_escaped("a & b_c 100%")
-    'a \\& b\\_c 100\\%'
-    """
-    return "".join(
-        _LATEX_SPECIAL.get(letter, letter) for letter in text if letter.isprintable() or letter in "\n\r\u202f"
-    )
 
 
 def figure_text(text: str, *, longest: int = 28) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from .._support.messages import Message, current_language, translated, translations
-from .formatting import latex_escaped, prose
+from .formatting import prose
 from .table import Table, table_html
 
 if TYPE_CHECKING:
@@ -61,7 +61,6 @@ def sheet(header: Header, sections: Sequence[Section]) -> str:
         sections=sections,
         version=version("skisnow"),
         cited=cited_text(),
-        bibtex=bibtex(),
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
     )
@@ -103,51 +102,8 @@ CITED: Final = (
     "doi 10.1111/sms.12035."
 )
 """Citations on a page: the program and the papers of its methods."""
-_BIBTEX: Final = """\
-@software{{skisnow,
-  author = {{{{The skisnow developers}}}},
-  title = {{skisnow}},
-  version = {{{version}}}
-}}
-@article{{moessner2013measurement,
-  author = {{Mössner, Martin and Innerhofer, Gerhard and Schindelwig, Kurt and Kaps, Peter and Schretter, Herwig and Nachbauer, Werner}},
-  title = {{Measurement of mechanical properties of snow for simulation of skiing}},
-  journal = {{Journal of Glaciology}},
-  year = {{2013}}
-}}
-@article{{moessner2013modeling,
-  author = {{Mössner, Martin and Heinrich, Dieter and Schindelwig, Kurt and Kaps, Peter and Schretter, Herwig and Nachbauer, Werner}},
-  title = {{Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic force-penetration relation}},
-  journal = {{Scandinavian Journal of Medicine \\& Science in Sports}},
-  year = {{2013}},
-  doi = {{10.1111/sms.12035}}
-}}
-"""  # noqa: E501
-_CAMPAIGN: Final = """\
-@misc{{campaign,
-  author = {{{authors}}},
-  title = {{{title}}},
-  howpublished = {{Field campaign{place}}}{files}
-}}
-"""
 
 
 def cited_text() -> str:
     """Sentence in HTML that cites the program and its papers."""
     return CITED.format(version=version("skisnow"))
-
-
-def bibtex(campaign: Mapping[str, Any] | None = None) -> str:
-    """BibTeX of the program and its papers, and of a campaign with the SHA-256 of its files.
-
-    campaign: ``campaign`` of results.json.
-    """
-    own = _BIBTEX.format(version=version("skisnow"))
-    if campaign is None:
-        return own
-    observers = " and ".join(f"{{{latex_escaped(name)}}}" for name in campaign["observers"]) or "{not stated}"
-    hashes = campaign.get("files", {})
-    listed = ", ".join(f"{latex_escaped(name)} SHA-256 {digest}" for name, digest in hashes.items())
-    files = f",\n  note = {{{listed}}}" if listed else ""
-    place = f", {latex_escaped(campaign['place'])}" if campaign["place"] else ""
-    return own + _CAMPAIGN.format(authors=observers, title=latex_escaped(campaign["name"]), place=place, files=files)

@@ -26,11 +26,10 @@ Kind: TypeAlias = Literal[
 text: text from a user; words: text of skisnow, with symbols; codes: list of names; yes: truth value; tick: truth value,
 shown only if true; count: integer; angle: degrees with all given digits; hundredths: number with two decimals; number:
 float or None; p: p value; interval: pair or None; range: minimum and maximum or None; estimate: (value, pair), one cell
-in HTML and LaTeX.
+in HTML.
 """
 
 ROWS_IN_HTML: Final = 300
-ROWS_IN_LATEX: Final = 2000
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +37,8 @@ class Column:
     """Column of a table.
 
     key: name in CSV, including the unit; a key of the records.
-    header, unit: texts in HTML and LaTeX, with symbols as ``H_V``.
-    digits: significant digits in HTML and LaTeX; CSV has all digits.
+    header, unit: texts in HTML, with symbols as ``H_V``.
+    digits: significant digits in HTML; CSV has all digits.
     interval: key of the 95 % interval of an estimate.
     """
 

@@ -1,18 +1,14 @@
-"""Drawings: files, compact paths and labels without overlap."""
+"""Drawings: files and labels without overlap."""
 
 import io
 import math
-import re
 from collections.abc import Callable
 from itertools import combinations
-from typing import Any, cast
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from markupsafe import Markup
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -26,18 +22,13 @@ from skisnow.report.figures.drawing import (
     Drawing,
     LeftOut,
     Picture,
-    compact_svg,
-    drawing_svg,
     left_title,
     letter_panels,
-    make_opaque,
     render,
 )
 from skisnow.report.figures.style import (
-    DOUBLE_MM,
     SiteStyle,
     journal_style,
-    legend_below,
     local_axes,
     new_figure,
     site_styles,
@@ -173,34 +164,8 @@ def test_each_file_is_drawn_once_after_the_axes_were_placed(monkeypatch: pytest.
         monkeypatch.setattr(Figure, "draw", noted)
         picture = render(Drawing("name", Markup(""), "words", figure))
     assert picture.svg.lstrip().startswith("<?xml") and picture.png.startswith(b"\x89PNG")
-    assert len(drawn) == 4  # each form once
+    assert len(drawn) == 3  # each form once
     assert drawn[0] == drawn[1] == drawn[2] != before  # of what the layout made of it
-
-
-def two_panels() -> Figure:
-    figure = new_figure(width_mm=DOUBLE_MM)
-    left, right = figure.subplots(1, 2, sharey=True)
-    band = left.fill_between([0, 1], [0, 0], [1, 1], color="#0000ff", alpha=0.25, label="a band")
-    left.set_title("a title that takes more room than a telephone has for it beside another one", loc="left")
-    left.set_ylabel("depth (mm)")
-    figure.colorbar(left.imshow([[0.0, 1.0]], aspect="auto"), ax=right)
-    twin = right.twinx()
-    twin.plot([0, 1], [0, 1], alpha=0.5, color="#ff0000")
-    legend_below(figure, [band])
-    return figure
-
-
-def test_eps_has_no_transparency_but_its_colour_on_white() -> None:
-    with journal_style():
-        figure = two_panels()
-        make_opaque(figure)
-    left, *_, twin = figure.axes
-    band = next(each for each in left.collections if each.get_label() == "a band")
-    (line,) = twin.lines
-    colours: list[Any] = [cast("Any", band.get_facecolor())[0], line.get_color()]
-    # a quarter of blue, and half of red, on white
-    assert [to_hex(each, keep_alpha=True) for each in colours] == ["#bfbfffff", "#ff8080ff"]
-    assert line.get_alpha() is None
 
 
 def test_files_of_print_are_the_same_each_time() -> None:
@@ -211,61 +176,9 @@ def test_files_of_print_are_the_same_each_time() -> None:
             return render(Drawing("name", Markup(""), "words", figure))
 
     first, second = once(), once()
-    assert first.pdf.startswith(b"%PDF") and first.eps.startswith(b"%!PS-Adobe-3.0 EPSF")
-    assert (first.pdf, first.eps) == (second.pdf, second.eps)
+    assert first.pdf.startswith(b"%PDF")
+    assert first.pdf == second.pdf
     assert first.files.keys() == set(FORMS)
-
-
-NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-TAG = "{http://www.w3.org/2000/svg}"
-
-
-@pytest.fixture(scope="module")
-def svg() -> str:
-    with journal_style():
-        figure = new_figure()
-        axes = figure.subplots()
-        x = np.linspace(0.0, 1.0, 60)
-        axes.plot(x, np.sin(9.0 * x), "o")
-        axes.plot(x, np.cos(9.0 * x))
-        axes.imshow([[0.0, 1.0], [0.5, 0.2]], extent=(0.0, 0.5, 0.0, 0.5))
-        axes.set_xlabel("0.123456 < a word")
-        return drawing_svg(Drawing("name", Markup(""), "words", figure))
-
-
-def elements(text: str) -> list[ElementTree.Element]:
-    style = f"{TAG}style"
-    return [each for each in ElementTree.fromstring(text).iter() if each.tag != style]
-
-
-def test_it_is_the_same_picture_in_fewer_bytes(svg: str) -> None:
-    compact = compact_svg(svg)
-    assert len(compact) < 0.7 * len(svg)
-    before, after = elements(svg), elements(compact)
-    assert [each.tag for each in after] == [each.tag for each in before]
-    assert [(each.text or "").strip() for each in after] == [(each.text or "").strip() for each in before]
-    for one, other in zip(before, after, strict=True):
-        for key in ("d", "x", "y", "transform", "viewBox", "width", "height"):
-            given = [float(each) for each in NUMBER.findall(one.get(key, ""))]
-            assert [float(each) for each in NUMBER.findall(other.get(key, ""))] == pytest.approx(given, abs=0.0051)
-
-
-def test_styles_and_references_lead_to_what_they_were(svg: str) -> None:
-    compact = compact_svg(svg)
-    rules = dict(re.findall(r"\.(s\d+)\{([^}]*)\}", compact))
-    styles = [each.get("style") or rules.get(each.get("class", "")) for each in elements(compact)]
-    assert styles == [each.get("style") for each in elements(svg)]
-    href = "{http://www.w3.org/1999/xlink}href"
-    before, after = paths_of_uses(svg, href), paths_of_uses(compact, "href")
-    assert len(after) > 60
-    assert after == pytest.approx(before, abs=0.0051)
-
-
-def paths_of_uses(text: str, href: str) -> list[float]:
-    """The numbers of all paths that are used, in order."""
-    paths = {each.get("id"): each.get("d", "") for each in elements(text)}
-    used = [paths[each.get(href, "")[1:]] for each in elements(text) if each.tag == f"{TAG}use"]
-    return [float(number) for path in used for number in NUMBER.findall(path)]
 
 
 def words_of(axes: Axes) -> list[Text]:

@@ -21,9 +21,8 @@ from ...estimation.results import results_pieces
 from ..figures.drawing import Drawing, LeftOut, Picture, Progress, picture_files, silent, write_pictures
 from ..figures.style import SiteStyle, site_styles
 from ..formatting import days_words, moment_words, significant
-from ..sheet import bibtex, cited_text, render_template
+from ..sheet import cited_text, render_template
 from ..table import Table, table_csv, table_html
-from ..table_latex import table_latex
 from .data import ReportData
 from .key_results import headline, key_results
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
@@ -116,7 +115,6 @@ def _write(data: ReportData, stage: Path, language: str, report: Progress) -> li
     for table in tables.values():
         report(f"table {table.name}")
         write_file(stage / "tables" / f"{table.file_stem}.csv", table_csv(table))
-        write_file(stage / "tables" / f"{table.file_stem}.tex", table_latex(table))
     with in_language(language):
         pictures, missing = _write_figures(data, stage / "figures", report)
         report("report.html")
@@ -125,8 +123,7 @@ def _write(data: ReportData, stage: Path, language: str, report: Progress) -> li
     write_file(stage / RESULTS, results_pieces(data.results))
     stems = {replace(table, synthetic=mark).file_stem for table in all_tables.values() for mark in (False, True)}
     stems -= {table.file_stem for table in tables.values()}
-    stale = [f"tables/{stem}{ending}" for stem in sorted(stems) for ending in (".csv", ".tex")]
-    return stale + picture_files(left_out.name for left_out in missing)
+    return [f"tables/{stem}.csv" for stem in sorted(stems)] + picture_files(left_out.name for left_out in missing)
 
 
 def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]) -> str:
@@ -146,7 +143,6 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         matplotlib_version=version("matplotlib"),
         cited=cited_text(),
-        bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
     )
 
 

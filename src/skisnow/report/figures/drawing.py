@@ -1,43 +1,33 @@
-"""A figure with its caption, and its files: SVG, PNG, PDF, EPS, and its data as CSV."""
+"""A figure with its caption, and its files: SVG, PNG and PDF."""
 
 from __future__ import annotations
 
 import base64
 import io
 import re
-from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from string import ascii_lowercase
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias, get_args
 
-import numpy as np
 from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.collections import Collection
-from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import require_writable, write_file
 from ..formatting import html
-from .figure_data import figure_data
 from .style import journal_style, local_axes, thinning_sentence
 
 UNDATED: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     "png": {"Software": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-    "eps": {"Creator": "skisnow"},
 }
-_EPS_DPI: Final = 150  # resolution of clouds of points in an EPS, which stores them as text
-_EPS_DATE: Final = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
 
 
@@ -78,37 +68,32 @@ class Picture:
     svg: str
     png: bytes
     pdf: bytes = b""
-    eps: bytes = b""
-    csv: str = ""
 
     @property
     def data_uri(self) -> str:
-        """Address of the image that contains the compacted SVG itself."""
+        """Address of the image that contains the SVG itself."""
         return data_uri(self.svg)
 
     @property
     def files(self) -> dict[str, str | bytes]:
         """Contents by file suffix without the point."""
-        return {"svg": self.svg, "png": self.png, "pdf": self.pdf, "eps": self.eps, "csv": self.csv}
+        return {"svg": self.svg, "png": self.png, "pdf": self.pdf}
 
 
-FORMS: Final = ("png", "svg", "pdf", "eps", "csv")
-Form: TypeAlias = Literal["png", "svg", "pdf", "eps"]
+Form: TypeAlias = Literal["png", "svg", "pdf"]
+FORMS: Final[tuple[Form, ...]] = get_args(Form)
 
 
 def data_uri(svg: str) -> str:
-    """Address of an SVG that contains the SVG itself, compacted, for an attribute of HTML."""
-    return "data:image/svg+xml;base64," + base64.b64encode(compact_svg(svg).encode()).decode("ascii")
+    """Address of an SVG that contains the SVG itself, for an attribute of HTML."""
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode("ascii")
 
 
 def render(drawing: Drawing) -> Picture:
-    """Render a drawing as SVG, PNG, PDF and EPS, with its data as CSV; the same bytes for the same data."""
+    """Render a drawing as SVG, PNG and PDF; the same bytes for the same data."""
     letter_panels(drawing.figure)
-    csv = figure_data(drawing.figure)
     svg, png, pdf = _render_svg(drawing), _render_as("png", drawing), _render_as("pdf", drawing)
-    make_opaque(drawing.figure)
-    eps = _EPS_DATE.sub(b"", _render_as("eps", drawing))
-    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, png, pdf, eps, csv)
+    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, png, pdf)
 
 
 def drawing_svg(drawing: Drawing) -> str:
@@ -124,14 +109,13 @@ def _render_svg(drawing: Drawing) -> str:
 
 def _render_as(form: Form, drawing: Drawing) -> bytes:
     content = io.BytesIO()
-    options: dict[str, Any] = {"dpi": _EPS_DPI} if form == "eps" else {}
     engine = drawing.figure.get_layout_engine()
     if engine is not None:
         engine.execute(drawing.figure)
         # with any engine, even the one called "none", each file would be drawn twice
         with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
             drawing.figure.set_layout_engine(None)
-    drawing.figure.savefig(content, format=form, metadata=UNDATED[form], **options)
+    drawing.figure.savefig(content, format=form, metadata=UNDATED[form])
     return content.getvalue()
 
 
@@ -171,70 +155,6 @@ def left_title(axes: Axes) -> Text | None:
     return next(titles, None)
 
 
-def make_opaque(figure: Figure) -> None:
-    """Replace transparent colours of a figure by opaque ones over white, as an EPS has no transparency."""
-    for artist in figure.findobj():
-        colours: dict[str, Any] = {}
-        if isinstance(artist, Collection) and artist.get_array() is None:  # else its colours come from a map
-            colours = {"facecolor": _blend(artist.get_facecolor()), "edgecolor": _blend(artist.get_edgecolor())}
-        elif isinstance(artist, Patch) and artist.get_alpha() is not None:
-            face, edge = _blend([artist.get_facecolor(), artist.get_edgecolor()])
-            colours = {"facecolor": face, "edgecolor": edge}
-        elif isinstance(artist, Line2D | Text) and artist.get_alpha() is not None:
-            colours = {"color": _blend([artist.get_color()], artist.get_alpha())[0]}
-        if colours:
-            artist.set_alpha(None)
-            artist.set(**colours)
-
-
-def _blend(colours: Any, alpha: float | None = None) -> Any:
-    """Colours blended over white, shape (n, 4); fully transparent ones stay transparent."""
-    rgba = to_rgba_array(colours, alpha)
-    opacity = rgba[:, 3:]
-    rgba[:, :3] = opacity * rgba[:, :3] + 1.0 - opacity
-    rgba[:, 3] = np.where(opacity[:, 0] > 0.0, 1.0, 0.0)
-    return rgba
-
-
-DIGITS: Final = 2  # decimals of a length in points: steps of 0.01 pt are 3.5 µm on paper
-_LENGTH: Final = re.compile(r"-?\d+\.\d{3,}")
-_PLACED: Final = re.compile(r' (?:d|x|y)="[^"]*"|translate\([^)]*\)')
-_PATH: Final = re.compile(r' d="[^"]*"')
-_STYLE: Final = re.compile(r' style="([^"]*)"')
-_NAME: Final = re.compile(r'(?:id="|#)([mpc][0-9a-f]{8,})')
-_FEW: Final = 2
-
-
-def compact_svg(svg: str) -> str:
-    r"""An SVG of Matplotlib in about half the bytes: rounded lengths, shared styles, no unused names.
-
-    >>> compact_svg('<svg>\n <g id="a">\n  <path d="M 1.23456 2 \nL 3 4 \n" style="fill: none"/>\n </g>\n</svg>')
-    '<svg><g><path d="M 1.23 2 L 3 4 " style="fill: none"/></g></svg>'
-    """
-    svg = _PLACED.sub(lambda match: _LENGTH.sub(_round_length, match[0]), svg)
-    svg = _PATH.sub(lambda match: match[0].replace("\n", ""), svg)
-    svg = re.sub(r'<g id="[^"]*"', "<g", re.sub(r">\s*\n\s*<", "><", svg)).replace("xlink:href", "href")
-    for number, name in enumerate(dict.fromkeys(_NAME.findall(svg))):
-        svg = svg.replace(name, f"i{number}")
-    return _share_styles(svg)
-
-
-def _round_length(match: re.Match[str]) -> str:
-    text = f"{float(match[0]):.{DIGITS}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
-def _share_styles(svg: str) -> str:
-    """Replace styles that several elements have by classes."""
-    often = [style for style, count in Counter(_STYLE.findall(svg)).most_common() if count > _FEW]
-    if not often:
-        return svg
-    classes = {style: f"s{number}" for number, style in enumerate(often)}
-    rules = "".join(f".{name}{{{style}}}" for style, name in classes.items())
-    svg = _STYLE.sub(lambda match: f' class="{classes[match[1]]}"' if match[1] in classes else match[0], svg)
-    return svg.replace("</svg>", f"<style>{rules}</style></svg>")
-
-
 Progress: TypeAlias = Callable[[str], None]  # callback for progress messages
 
 
@@ -248,7 +168,7 @@ def picture_files(names: Iterable[str]) -> list[str]:
 
 
 def write_pictures(drawings: Iterable[Drawing], folder: Path, *, progress: Progress = silent) -> list[Picture]:
-    """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
+    """Render drawings, see `render_pictures`, and write each as PNG, SVG and PDF.
 
     Raises OutputError: a file cannot be written.
     """
@@ -274,7 +194,7 @@ def render_pictures(drawings: Iterable[Drawing], *, progress: Progress = silent)
 
 
 PNG_WIDTH: Final = 1200  # width of a PNG in pixels
-SUFFIXES: Final = (".png", ".svg", ".pdf", ".csv")
+SUFFIXES: Final = (".png", ".svg", ".pdf")
 
 
 def require_drawable(path: Path) -> None:
@@ -293,7 +213,7 @@ def require_drawable(path: Path) -> None:
 def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH) -> None:
     """Draw in the house style and write a complete file; the same bytes for the same data.
 
-    path: Path with the suffix .png (1200 pixels wide), .svg or .pdf, or .csv for the data of the figure.
+    path: Path with the suffix .png (1200 pixels wide), .svg or .pdf.
     draw: function that draws the figure; it is called inside the house style.
     language: language of the figure (en, de).
     """
@@ -302,9 +222,6 @@ def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGL
     with journal_style(), in_language(language):
         figure = draw()
         local_axes(figure)
-        if kind == "csv":
-            write_file(path, figure_data(figure))
-            return
         content = io.BytesIO()
         options: dict[str, Any] = {"dpi": PNG_WIDTH / figure.get_figwidth()} if kind == "png" else {}
         figure.savefig(content, format=kind, metadata=UNDATED[kind], **options)
