@@ -1,6 +1,6 @@
 """``python -m benchmarks.twins``: compute twins, and write the tables of docs/validation/identification.md.
 
-Twins of photo cells and marks take minutes, those of turns hours: all that are finished are in docs/validation/twins,
+Twins of photo cells take minutes, those of turns hours: all that are finished are in docs/validation/twins,
 and the same command goes on with those that are missing.
 """
 
@@ -12,7 +12,7 @@ from typing import Final
 
 from benchmarks.page_tables import write_tables
 
-from . import glides, grooves, shears, tables
+from . import glides, shears, tables
 from .kept import KeptTwins
 from .pool import run_twins
 from .truth import SCENARIOS, SEEDS
@@ -20,7 +20,7 @@ from .turns import NOISELESS, one_noiseless, one_turn
 
 DOCS: Final = Path(__file__).parents[2] / "docs"
 PAGE: Final = "validation/identification"
-KINDS: Final = ("glides", "grooves", "noiseless", "turns", "shears")
+KINDS: Final = ("glides", "noiseless", "turns", "shears")
 
 
 def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
@@ -36,7 +36,6 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
     seeds = SEEDS[: options.seeds]
     asked = {
         "glides": (glides.one_glide, [(case, seed) for case in glides.CASES for seed in seeds]),
-        "grooves": (grooves.one_groove, [(case, seed) for case in grooves.CASES for seed in seeds]),
         "noiseless": (one_noiseless, [(scenario + NOISELESS, 0) for scenario in SCENARIOS]),
         "shears": (shears.one_shear, [(shears.CASE, seed) for seed in seeds]),
         "turns": (one_turn, [(scenario, seed) for seed in seeds for scenario in SCENARIOS]),

@@ -2,13 +2,12 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from scipy.stats import binomtest
 
-from . import glides, grooves, shears
+from . import glides, shears
 from .kept import KeptTwins
 from .truth import ERRORS, FREE, SCENARIOS
 from .turns import ELASTIC, NOISELESS
@@ -17,9 +16,6 @@ Rows = Sequence[Mapping[str, str]]
 NO_ERROR: Final = "none"
 ALLOWED: Final = 0.01
 """Largest deviation over the run's length."""
-HARDNESSES: Final = (0.04, 0.2, 1.0, 5.0, 20.0, 90.0)
-"""Limits (N/mm³) of the rows of the table of marks."""
-HARDNESS, STRENGTH = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
 UNITS: Final = {"friction.mu_0": "", "drag.drag_area_m2": " m²", "start.heading_deg": "°"}
 
 
@@ -31,7 +27,6 @@ def page_tables(kept: Mapping[str, KeptTwins]) -> dict[str, str]:
         "without noise": without_noise(kept["noiseless"]),
         "elastic": elastic(kept["turns"]),
         "photo cells": photo_cells(kept["glides"]),
-        "marks": snow_from_marks(kept["grooves"]),
         "shear": shear_of_tracks(kept["shears"]),
     }
 
@@ -120,41 +115,6 @@ def elastic(turns: KeptTwins) -> str:
     return table(head, rows, words=2)
 
 
-def snow_from_marks(marks: KeptTwins) -> str:
-    """By ranges of hardness: the errors of H_V, and of S_f where the edge slid."""
-    every = marks.of(grooves.CASES[0])
-    rows = []
-    for low, high in pairwise(HARDNESSES):
-        twins = [row for row in every if low <= float(row[f"{HARDNESS} true"]) < high]
-        rows.append((f"{low:g} to {high:g}", *_marks_row(twins)))
-    rows.append(("all", *_marks_row(every)))
-    if every:
-        slid = [row for row in every if row["slid"] == row["said to have slid"] == "1"]
-        shares = (binomial_words(every, HARDNESS), binomial_words(slid, STRENGTH))
-        rows.append(("99 % interval of that share", "", "", "", shares[0], "", "", "", "", "", shares[1], ""))
-    head = (
-        "H_V (N/mm³)", "twins", "depth (mm)", "error of H_V (%)", "H_V covered", "slid", "seen", "held", "seen",
-        "error of S_f (%)", "S_f covered (slid)", "bound below S_f (held)",
-    )  # fmt: skip
-    return table(head, rows, words=1)
-
-
-def _marks_row(twins: Rows) -> tuple[str, ...]:
-    if not twins:
-        return ("0", *[""] * 10)
-    slid = [row for row in twins if row["slid"] == "1"]
-    held = [row for row in twins if row["slid"] == "0"]
-    seen = [row for row in slid if row["said to have slid"] == "1"]
-    rightly = [row for row in held if row["said to have slid"] == "0"]
-    bounded = sum(float(row[f"{STRENGTH} low"] or 0.0) <= float(row[f"{STRENGTH} true"]) for row in rightly)
-    depth = column(twins, "depth_mm")
-    return (
-        str(len(twins)), f"{depth.min():.2f} to {depth.max():.2f}", rms_factor(twins, HARDNESS),
-        covered_words(twins, HARDNESS), str(len(slid)), str(len(seen)), str(len(held)), str(len(rightly)),
-        rms_factor(seen, STRENGTH), covered_words(seen, STRENGTH), f"{bounded} of {len(rightly)}",
-    )  # fmt: skip
-
-
 def shear_of_tracks(twins: KeptTwins) -> str:
     """By whether the edge slips: errors of S_f and u_y, how many intervals hold the truth, how they hang together."""
     rows = []
@@ -212,12 +172,6 @@ def covered_words(twins: Rows, key: str) -> str:
     """Such as 19 of 20."""
     k, n = covered(twins, key)
     return f"{k} of {n}" if n else ""
-
-
-def binomial_words(twins: Rows, key: str) -> str:
-    """Such as 88.3 to 97.5 %."""
-    low, high = binomial(*covered(twins, key))
-    return f"{100.0 * low:.1f} to {100.0 * high:.1f} %"
 
 
 def rms_factor(twins: Rows, key: str) -> str:

@@ -1,13 +1,12 @@
 """The machinery of the twins: truths that do not change, kept rows, counting, tables; no whole turn is identified."""
 
 import csv
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmarks.page_tables import stale_tables, table_path
-from benchmarks.twins import grooves, tables
+from benchmarks.twins import tables
 from benchmarks.twins.__main__ import DOCS, KINDS, PAGE, main
 from benchmarks.twins.kept import KeptTwins, Row
 from benchmarks.twins.pool import run_twins
@@ -81,24 +80,6 @@ def test_binomial_interval_by_hand() -> None:
     """All of 5: (0.005)^(1/5). None of 4: 1 - (0.005)^(1/4)."""
     assert tables.binomial(5, 5) == pytest.approx((0.005 ** (1 / 5), 1.0))
     assert tables.binomial(0, 4) == pytest.approx((0.0, 1.0 - 0.005 ** (1 / 4)))
-
-
-def test_a_sliding_groove_balances_and_a_holding_one_carves() -> None:
-    """At the radius of a sliding edge, m v²/R over the same grip is S_f again; fast slides, slow holds."""
-    fast, slow = (
-        grooves.true_groove(0.5, 0.1, {"start.heading_deg": 0.0, "start.speed_m_per_s": speed}) for speed in (9.0, 3.0)
-    )
-    assert fast.slid
-    assert not slow.slid
-    assert fast.turn_radius / slow.turn_radius == pytest.approx(fast.needed / 0.1e6, rel=1e-9)
-    assert fast.needed / slow.needed == pytest.approx(9.0, rel=1e-9)
-    assert slow.depth / 0.9 / slow.width == pytest.approx(math.tan(math.radians(30.0)), rel=0.1)  # the ski twists
-
-
-def test_places_below_the_surface_are_not_written_down() -> None:
-    drawn = grooves.above_zero(0.1, 1.0, np.random.default_rng(1))
-    assert len(drawn) == grooves.PLACES
-    assert (drawn > 0.0).all()
 
 
 def test_tables_hold_the_finished_twins(tmp_path: Path) -> None:

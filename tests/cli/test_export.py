@@ -254,16 +254,3 @@ def test_an_interrupted_search_continues(tmp_path: Path, capsys: Printed, monkey
     found = answer([*words, "--resume"], capsys)
     assert found["outcome"] == "converged"
     assert found["effort"]["kept_simulations"] == 5
-
-
-def test_the_strength_alone_from_marks(tmp_path: Path, capsys: Printed) -> None:
-    """The kind of each file is in the terminal, and in the JSON."""
-    path = tmp_path / "marks.csv"
-    path.write_text("turn_radius_m\n16.1\n16.3\n16.2\n", encoding="utf-8")
-    assert main(["identify", "carved-46m", str(path), "--free", "S_f", "--out", str(tmp_path / "found")]) == 0
-    printed = capsys.readouterr()
-    assert f"{path}: measured grooves (places: 3)\n" in printed.out
-    assert "bounded from below" in printed.err
-    found = json.loads((tmp_path / "found" / "identification.json").read_text("utf-8"))
-    jsonschema.validate(found, SCHEMA)
-    assert found["data"] == [{"name": str(path), "taken_for": "measured grooves (places: 3)"}]

@@ -31,8 +31,7 @@ def file_in(folder: Path, text: str, name: str = "cells.csv") -> Path:
     ("text", "row"),
     [
         (CELLS.replace("3.34", "3,34"), 2),
-        ("width_mm,depth_mm\n20.0,3.0\n20,3,1\n", 3),
-        ("depth_mm\n3,1\n3,3\n3,0\n", 2),
+        (CELLS.replace("5.1", "5,1"), 3),
     ],
 )
 def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: int, tmp_path: Path) -> None:
@@ -44,9 +43,8 @@ def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: int, tmp_
 @pytest.mark.parametrize(
     ("text", "column", "meant"),
     [
-        ("depth_mm,turn_radius\n3,12\n", "turn_radius", "turn_radius_m"),
-        ("depth_mm,depth_sd\n3,0.1\n", "depth_sd", "depth_sd_mm"),
         (CELLS.replace("time_s\n", "time_s,time_sd\n"), "time_sd", "time_sd_s"),
+        (CELLS.replace("time_s\n", "time\n"), "time", "time_s"),
     ],
 )
 def test_misspelled_columns_are_rejected(text: str, column: str, meant: str, tmp_path: Path) -> None:
@@ -62,14 +60,6 @@ def test_another_column_is_nobody_s_concern(tmp_path: Path) -> None:
     assert found.runs[0].time.tolist() == [3.34, 5.1, 6.5]
 
 
-@pytest.mark.parametrize(
-    "columns", [("experiment", "site", "tool", "load_N", "depth_mm"), ("experiment", "depth_mm", "moment_Nm")]
-)
-def test_a_table_of_a_campaign_is_not_read_as_grooves(columns: tuple[str, ...], tmp_path: Path) -> None:
-    with raises(ParameterError, "table_of_campaign"):
-        read_data(file_in(tmp_path, f"{','.join(columns)}\n1,2,3,4,5,6\n"))
-
-
 def test_what_was_measured_once_counts_once(tmp_path: Path) -> None:
     one, copy = file_in(tmp_path, CELLS), file_in(tmp_path, CELLS, "copy.csv")
     with raises(ParameterError, "same_file"):
@@ -77,7 +67,7 @@ def test_what_was_measured_once_counts_once(tmp_path: Path) -> None:
 
 
 def test_the_track_of_a_run_is_a_track(tmp_path: Path) -> None:
-    """It has the column turn_radius_m, as marks do; every column that `skisnow simulate` writes is there."""
+    """Every column that `skisnow simulate` writes is there."""
     row = dict.fromkeys(COLUMNS, "1") | {"turn_radius_m": ""}
     rows = [",".join((row | {"time_s": f"{k}", "x_m": f"{3 * k}"}).values()) for k in range(3)]
     found = read_data(file_in(tmp_path, "\n".join([",".join(row), *rows]), "track.csv"))
@@ -93,7 +83,6 @@ def test_the_track_of_a_run_is_a_track(tmp_path: Path) -> None:
         ("time,lat,lon,turn_radius_m\n0,47,11,3\n1,47.0001,11,3\n", "a track (points: 2)"),
         ("time_s,x_m,y_m,station_m\n0,0,0,0\n1,5,0,5\n", "a track (points: 2)"),
         ("run,station_m,time_s,x_m,y_m\na,5,1,5,0\na,9,2,9,0\nb,5,1,5,0\n", "photo-cell times (runs: 2)"),
-        ("x_m,y_m,depth_mm,depth_sd_mm\n0,0,3,1\n1,1,3,1\n", "measured grooves (places: 2)"),
     ],
 )
 def test_what_a_table_is_taken_for(text: str, kind: str, tmp_path: Path) -> None:

@@ -210,7 +210,10 @@ def test_likelihoods_of_normal_noise(likelihood: Any) -> None:
 
 
 def test_without_residuals_there_is_no_likelihood() -> None:
-    assert intervals._exact_likelihood(solution("marks"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0] == -np.inf
+    assert (
+        intervals._exact_likelihood(solution("photo_cells"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0]
+        == -np.inf
+    )
 
 
 class Sampler:
@@ -242,7 +245,7 @@ def sampler(monkeypatch: pytest.MonkeyPatch) -> list[Sampler]:
 
 
 @pytest.mark.parametrize(
-    ("kind", "told"), [("track", intervals.QUADRATIC_POSTERIOR), ("marks", intervals.EXACT_POSTERIOR)]
+    ("kind", "told"), [("track", intervals.QUADRATIC_POSTERIOR), ("photo_cells", intervals.EXACT_POSTERIOR)]
 )
 def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: str, sampler: list[Sampler]) -> None:
     said: list[str] = []
@@ -258,7 +261,7 @@ def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: s
 
 
 def test_a_parameter_that_is_open_has_no_posterior(sampler: list[Sampler]) -> None:
-    unknown = solution("marks")
+    unknown = solution("photo_cells")
     unknown.uncertainty = lambda: SimpleNamespace(standard_errors=np.full(2, np.inf), groups=((0, 1),))
     places, _ = intervals.posterior_places(unknown, 100, np.random.default_rng(1), lambda _: None)
     assert places is None

@@ -16,7 +16,6 @@ from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.caaml import read_caaml
 from skisnow.campaign.smet import read_smet
 from skisnow.cli import main
-from skisnow.identification import read_measured_grooves
 from skisnow.identification.data_tables import read_photo_cells
 from skisnow.samples import glide_time, write_samples
 
@@ -84,7 +83,6 @@ def test_a_ski_is_measured(samples: Path, tmp_path: Path) -> None:
 
 
 def test_identification_files_are_read(samples: Path) -> None:
-    assert len(read_measured_grooves(samples / "marks.csv")) == 8
     assert [len(run.station) for run in read_photo_cells(samples / "cells.csv").runs] == [7, 7]
 
 

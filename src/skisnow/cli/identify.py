@@ -1,4 +1,4 @@
-"""``skisnow identify``: parameters from tracks, photo-cell times, or the track left in the snow."""
+"""``skisnow identify``: parameters from tracks and photo-cell times."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add ``skisnow identify`` to the program."""
     parser = commands.add_parser(
         "identify",
-        help="friction, drag, snow and more from tracks, photo-cell times or measured grooves",
+        help="friction, drag, snow and more from tracks or photo-cell times",
         description="Find the parameters of a scenario that fit what was measured. Ctrl-C keeps the best so far.",
     )
     parser.add_argument("scenario", metavar="NAME|SCENARIO.toml", help="a built-in scenario or a TOML file")
@@ -46,8 +46,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         nargs="+",
         type=Path,
         metavar="DATA",
-        help="tracks (CSV, GPX, TCX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
-        "fitted together",
+        help="tracks (CSV, GPX, TCX, FIT, NMEA, UBX, .pos) or photo-cell times (CSV); several are fitted together",
     )
     free = 'parameters to fit, such as mu_0,drag_area,S_f; default: those with a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from .data_tables import MeasuredGrooves, PhotoCellRun, PhotoCells, read_measured_grooves, read_photo_cells
+from .data_tables import PhotoCellRun, PhotoCells, read_photo_cells
 from .fitting import identify
 from .parameter import Parameter
 from .result import Identification, Identified, identification_dict
 
 __all__ = [
-    "Identification", "Identified", "MeasuredGrooves", "Parameter", "PhotoCellRun", "PhotoCells", "identification_dict",
-    "identify", "read_measured_grooves", "read_photo_cells",
+    "Identification", "Identified", "Parameter", "PhotoCellRun", "PhotoCells", "identification_dict",
+    "identify", "read_photo_cells",
 ]  # fmt: skip

@@ -30,31 +30,19 @@ from ..track.projection import GeodeticPoint, east_north_up
 from ..track.readers.table import GEODETIC, LOCAL, TIMES
 from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
-from .data_tables import (
-    CELL_COLUMNS,
-    CELL_SPREAD,
-    GROOVE_COLUMNS,
-    SPREADS,
-    MeasuredGrooves,
-    PhotoCells,
-    read_measured_grooves,
-    read_photo_cells,
-)
+from .data_tables import CELL_COLUMNS, CELL_SPREAD, PhotoCells, read_photo_cells
 from .problem import START
 from .track_positions import TrackPoints, first_motion, require_near, track_points
 
 _HEAD: Final = 4096
-_OF_CAMPAIGN: Final = {"experiment", "load_N", "moment_Nm", "lever_arm_mm"}
-"""Columns of the campaign's tables that have a depth, as measured grooves do."""
-Data: TypeAlias = Track | PhotoCells | MeasuredGrooves
+Data: TypeAlias = Track | PhotoCells
 SNOW_NUMBERS: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 
 
 def read_data(path: str | Path) -> Data:
-    """Read photo-cell times or measured grooves, by their columns, or else a track.
+    """Read photo-cell times, by their columns, or else a track.
 
-    A table with time, x and y, or time, latitude and longitude, is a track, whatever else it has: a run's own track.csv
-    has the column ``turn_radius_m``, as measured grooves do.
+    A table with time, x and y, or time, latitude and longitude, is a track unless it has all columns of photo cells.
     """
     path = Path(path)
     if not is_file(path):
@@ -62,23 +50,16 @@ def read_data(path: str | Path) -> Data:
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
-            _reject_misspelt(path, head, (*CELL_COLUMNS, CELL_SPREAD))
+            _reject_misspelt(path, head)
             return read_photo_cells(path)
-        if head & set(GROOVE_COLUMNS) and not _is_track(head):
-            if of_campaign := sorted(head & _OF_CAMPAIGN):
-                raise ParameterError(
-                    "{path} has a column {column}: it is a table of a campaign, no measured grooves. Give its folder "
-                    "to `skisnow analyse`, and results.json as snow.results"
-                ).tag("table_of_campaign", path=path, column=of_campaign[0])
-            _reject_misspelt(path, head, (*GROOVE_COLUMNS, *SPREADS))
-            return read_measured_grooves(path)
     from ..track.read import read_track
 
     return read_track(path)
 
 
-def _reject_misspelt(path: Path, head: set[str], columns: tuple[str, ...]) -> None:
-    """Reject a column whose name is similar to that of a missing one: it would not be read."""
+def _reject_misspelt(path: Path, head: set[str]) -> None:
+    """Reject a column of photo cells whose name is similar to that of a missing one: it would not be read."""
+    columns = (*CELL_COLUMNS, CELL_SPREAD)
     absent = [name for name in columns if name not in head]
     for name in sorted(head.difference(columns)):
         if similar := difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75):
@@ -96,8 +77,6 @@ def data_description(data: Data) -> str:
     """Kind and size of the data recognised in a file, in words."""
     if isinstance(data, PhotoCells):
         return Message("photo-cell times (runs: {count})", count=len(data.runs))
-    if isinstance(data, MeasuredGrooves):
-        return Message("measured grooves (places: {count})", count=len(data))
     return Message("a track (points: {count})", count=len(data))
 
 
@@ -134,7 +113,7 @@ def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[TrackPoints]) ->
 class IdentificationData:
     """The data of an identification by kind; names of runs are unique.
 
-    tracks, cells, grooves: measured data.
+    tracks, cells: measured data.
     starts: values of keys for single runs, by run, from ``[identify.runs."NAME"]``.
     fixed: values of keys in every simulated run.
     first_motions: if there are several runs: values of the start keys, by track, estimated from its first points.
@@ -144,7 +123,6 @@ class IdentificationData:
 
     tracks: tuple[TrackPoints, ...]
     cells: tuple[PhotoCells, ...]
-    grooves: tuple[MeasuredGrooves, ...]
     starts: Mapping[str, Mapping[str, float]]
     fixed: Mapping[str, float]
     first_motions: Mapping[str, Mapping[str, float]]
@@ -195,7 +173,6 @@ def collect_data(
     return IdentificationData(
         tracks=tuple(tracks),
         cells=cells,
-        grooves=tuple(table for table in measurements if isinstance(table, MeasuredGrooves)),
         starts=starts,
         fixed={key: float(scenario.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},

@@ -1,8 +1,7 @@
-"""CSV tables of photo-cell times and of measured grooves, with the unit in each column name."""
+"""CSV tables of photo-cell times, with the unit in each column name."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -16,16 +15,10 @@ from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.units import ShownFields
 from ..parameters import Quantity
 
-FEWEST_FOR_SCATTER: Final = 3
-
-
 _ACTION: Final = Message("Write finite numbers without their units, with one decimal mark in all of the file.")
 _MEASURED: Final = {
     "station": Message("station"),
     "time": Message("time"),
-    "depth": Message("depth"),
-    "width": Message("width"),
-    "turn_radius": Message("turn radius"),
 }
 
 
@@ -126,88 +119,3 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
         except ParameterError as error:
             raise ParameterError("{name}: {error}").tag(error.code, name=path, error=error) from error
     return PhotoCells(str(path), tuple(runs))
-
-
-GROOVE_COLUMNS: Final = ("depth_mm", "width_mm", "turn_radius_m")
-SPREADS: Final = ("depth_sd_mm", "width_sd_mm", "turn_radius_sd_m")
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class MeasuredGrooves(ShownFields):
-    """Depth, width and turn radius (m) of grooves measured at n places along a track, (n,) each.
-
-    name: Name of the file.
-    depth, width: Depth of the remaining groove, and its width across it in the snow's surface; NaN if not measured.
-    turn_radius: Radius of the track, > 0 to either side; NaN if not measured.
-    depth_sd, width_sd, turn_radius_sd: Their standard deviations.
-    stated: True if the file has all standard deviations; otherwise they are the scatter of the places.
-    """
-
-    name: str
-    depth: FloatArray
-    width: FloatArray
-    turn_radius: FloatArray
-    depth_sd: FloatArray
-    width_sd: FloatArray
-    turn_radius_sd: FloatArray
-    stated: bool = True
-
-    def __post_init__(self) -> None:
-        for what in ("depth", "width", "turn_radius"):
-            values, spread = getattr(self, what), getattr(self, f"{what}_sd")
-            for place in np.flatnonzero(np.isfinite(values)):
-                if values[place] <= 0.0:
-                    raise ParameterError("{name}: {what} of place {place} is {value:g} m; it must be above 0").tag(
-                        "out_of_range", name=self.name, what=_MEASURED[what], place=place + 1, value=values[place]
-                    )
-                if not spread[place] > 0.0:
-                    raise ParameterError(
-                        "{name}: the standard deviation of {what} of place {place} must be above 0"
-                    ).tag("out_of_range", name=self.name, what=_MEASURED[what], place=place + 1)
-
-    def __len__(self) -> int:
-        return len(self.depth)
-
-
-def read_measured_grooves(path: str | Path) -> MeasuredGrooves:
-    """Read ``depth_mm, width_mm, turn_radius_m, depth_sd_mm, width_sd_mm, turn_radius_sd_m``, a row for each place.
-
-    Columns and cells may be missing. A missing standard deviation is estimated from the scatter of at least 3 places.
-
-    Raises ParameterError: the file cannot be read, all three quantities are missing, or a number is missing or not
-        above 0.
-    """
-    table = _read_rows(Path(path), (), (*GROOVE_COLUMNS, *SPREADS))
-    columns = {}
-    stated = True
-    for name, of_spread in zip(GROOVE_COLUMNS, SPREADS, strict=True):
-        quantity = Quantity(name, "", needed=False, lowest=-math.inf if name == "turn_radius_m" else 0.0, above=True)
-        spread = Quantity(of_spread, "", needed=False, lowest=0.0, above=True)
-        values, sd = (_column(table, each) * each.factor for each in (quantity, spread))
-        measured = np.isfinite(values)
-        if not np.isfinite(sd[measured]).all():
-            stated = False
-            sd = np.full(len(values), _standard_deviation(str(path), name, values[measured]))
-        columns[name] = (values, sd)
-    (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
-    if not any(np.isfinite(values).any() for values in (depth, width, radius)):
-        raise ParameterError("{name} has no column of {columns}").tag(
-            "no_columns", name=path, columns=list(GROOVE_COLUMNS)
-        )
-    return MeasuredGrooves(str(path), depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
-
-
-def _standard_deviation(file: str, name: str, values: FloatArray) -> float:
-    if len(values) < FEWEST_FOR_SCATTER:
-        raise ParameterError(
-            "{file}: {name} has no standard deviation ({column}), and {count} places are too few to estimate it; "
-            "state it, or measure {fewest} places"
-        ).tag(
-            "no_deviation",
-            file=file,
-            name=name,
-            column=name.replace("_mm", "_sd_mm").replace("s_m", "s_sd_m"),
-            count=len(values),
-            fewest=FEWEST_FOR_SCATTER,
-        )
-    return max(float(np.std(values, ddof=1)), 1e-6)

@@ -22,8 +22,6 @@ from ..scenario.keys import free_keys
 from ..scenario.reading import build_input, load_input
 from ..scenario.resolution import ScenarioInput
 from .data import Data, IdentificationData, collect_data, fingerprint, start_values
-from .groove_residuals import GrooveResiduals, require_groove_stays
-from .grooves_alone import identify_from_grooves
 from .intervals import require_bootstrap
 from .parameter import parameter_table
 from .photo_cell_times import PhotoCellTimes
@@ -64,7 +62,7 @@ def identify(
     scenario
         A scenario, a built-in name, the path of a file, or a `ScenarioInput`.
     data
-        Tracks, photo-cell times, measured grooves, or paths of files with these; one or several.
+        Tracks, photo-cell times, or paths of files with these; one or several.
     free
         Free keys, with or without section and unit. ``KEY@RUN`` is the key in one of several runs; ``KEY@each`` has a
         separate value in each run, as keys of the start always have. Default: those with a table
@@ -165,12 +163,10 @@ def identify(
             warnings=(*measurements.warnings, *([unused] if fixed else [])),
             methods=measurements.methods,
         )
-        problem, only = unweighted_problem(parameters, observations), observations[0]
+        problem = unweighted_problem(parameters, observations)
         needed = len(parameters) + problem.nuisances + (not problem.accuracy_is_stated)
         if not problem.priors and problem.points < needed:
             result = too_few_points(problem, request)
-        elif len(observations) == 1 and isinstance(only, GrooveResiduals):
-            result = identify_from_grooves(parameters, only, request)
         else:
             result = solve(problem, request)
         return replace(
@@ -188,22 +184,18 @@ def identify(
 def _make_observations(
     scenario: ScenarioFile, read: IdentificationData, simulations: Simulations, *, clock_is_free: bool
 ) -> tuple[Observations, ...]:
-    observationss: list[Observations] = []
+    observations: list[Observations] = [
+        PhotoCellTimes(cell, scenario, read.starts, clock_is_free) for cell in read.cells
+    ]
     if read.tracks:
-        observationss.append(
-            TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(scenario.scenario))
-        )
-    observationss += [PhotoCellTimes(cell, scenario, read.starts, clock_is_free) for cell in read.cells]
-    for groove in read.grooves:
-        require_groove_stays(scenario)
-        observationss.append(GrooveResiduals(groove, scenario))
-    return tuple(observationss)
+        tracks = TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(scenario.scenario))
+        observations.insert(0, tracks)
+    return tuple(observations)
 
 
 _KINDS: Final[dict[Kind, Message]] = {
     "track": Message("the track"),
     "photo_cells": Message("the photo-cell times"),
-    "marks": Message("the grooves"),
 }
 
 

@@ -17,7 +17,7 @@ from .parameter import Parameter
 
 Values: TypeAlias = Mapping[str, float]
 """Parameters by key, in the units that the keys name."""
-Kind: TypeAlias = Literal["track", "photo_cells", "marks"]
+Kind: TypeAlias = Literal["track", "photo_cells"]
 START: Final = "start."
 """Beginning of the keys that have a separate value in each run."""
 
@@ -111,8 +111,7 @@ class Fit(ShownFields):
     """Measured and fitted values of one run.
 
     name, kind: name of the run, and kind of its data.
-    along: (n,), abscissa of the points: time (s) of a track, distance (m) of photo cells, number of a place of a
-        groove.
+    along: (n,), abscissa of the points: time (s) of a track, distance (m) of photo cells.
     labels: names of the k quantities, with units.
     measured, fitted, sd: (n, k), values and the standard deviations that divide the residuals; NaN if a quantity was
         not measured.
@@ -137,7 +136,7 @@ class Observations(Protocol):
 
     kind: kind of the data.
     used_keys: keys of the scenario that can affect these data; None: all.
-    points: number of points: times of a track, cells passed, numbers measured at places of grooves.
+    points: number of points: times of a track, cells passed.
     nuisances: number of values that are fitted inside the residuals, such as the offset of a clock.
     accuracy_is_stated: True if residuals are in stated standard deviations, False if these are estimated.
     series: lengths of the time series in the residuals.

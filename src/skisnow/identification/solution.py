@@ -231,13 +231,12 @@ def _neighbour_correlation(solution: Solution) -> float | None:
     products = squares = pairs = 0.0
     first = 0
     for observation in solution.problem.observations:
-        for length in observation.series if observation.kind != "marks" else ():
+        for length in observation.series:
             part = solution.optimum.residuals[first : first + length]
             first += length
             products += float(part[1:] @ part[:-1])
             squares += float(part @ part) * (length - 1) / max(length, 1)
             pairs += length - 1
-        first += sum(observation.series) if observation.kind == "marks" else 0
     if pairs < 10 or squares == 0.0:
         return None
     correlation = products / squares

@@ -18,16 +18,6 @@ from .result import Identification
 from .search import CLOSED_FORM_SEARCH, Search, SearchOptions, SearchState
 from .solution import SearchRequest, Solution, build_identification
 
-GROOVE_SEARCH: Final = replace(
-    CLOSED_FORM_SEARCH,
-    smallest_step=0.005,
-    largest_step=0.005,
-    tolerance=1e-3,
-    worth=1e-6,
-    rough=0.05,
-    smallest_move=1e-6,
-)
-"""Options for grooves, whose equilibria have a limited accuracy."""
 _NOISE_ROUNDS: Final = 3
 _SAME_NOISE: Final = 0.05
 _LAST_TOLERANCE: Final = 0.2
@@ -61,7 +51,7 @@ def solve(problem: Problem, plan: SearchRequest) -> Identification:
 def search_options(problem: Problem, plan: SearchRequest) -> SearchOptions:
     """Options of the search for the least accurate kind of data; bootstrap and posterior need second differences."""
     kinds = {observation.kind for observation in problem.observations}
-    options = SearchOptions() if "track" in kinds else GROOVE_SEARCH if "marks" in kinds else CLOSED_FORM_SEARCH
+    options = SearchOptions() if "track" in kinds else CLOSED_FORM_SEARCH
     central = options.central or plan.bootstrap > 0 or plan.posterior > 0
     return replace(options, accuracy_is_stated=problem.accuracy_is_stated, central=central)
 

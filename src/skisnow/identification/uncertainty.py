@@ -47,8 +47,7 @@ _HELPS: Final = {
         "only their product acts. Fix the air's density"
     ),
     frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): Message(
-        "grip is S_f times the depth, and H_V sets the depth. Depth and width of the groove that stayed, or a field "
-        "test, give H_V"
+        "grip is S_f times the depth, and H_V sets the depth. A penetration test gives H_V"
     ),
     frozenset({"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}): Message(
         "an edge that holds yields in proportion to u_y over S_f. A run that slips, or a shear test with its turning "
@@ -56,7 +55,7 @@ _HELPS: Final = {
     ),
     frozenset({"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}): Message(
         "a ski that cuts deeper bends more and turns tighter, as one on a larger edge angle does. Measure the edge "
-        "angle, or the depth of the groove"
+        "angle"
     ),
     frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): Message(
         "a turn that begins later looks like a tighter one. A longer track distinguishes them"
@@ -68,8 +67,7 @@ _ALONE: Final = {
         "a tighter turn or a shear test determines it"
     ),
     "snow.H_V_N_per_mm3": Message(
-        "The path hardly depends on the depth of the groove. Depth and width of the groove, or a penetration test, "
-        "determine it"
+        "The path hardly depends on the depth of the groove. A penetration test determines it"
     ),
     "drag.drag_area_m2": Message("At these speeds drag is too small. A faster run determines it"),
     "snow.shear_displacement_mm": Message(

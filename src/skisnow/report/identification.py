@@ -28,7 +28,7 @@ from .table import Column, Table
 
 Json: TypeAlias = "Mapping[str, Any]"
 ANSWER: Final = "identification.json"
-FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "residuals_marks", "profiles")
+FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "profiles")
 """Names of an identification's figures, in figures/ as .png and .svg."""
 COLUMNS: Final = ("run", "kind", "along", "quantity", "measured", "identified", "sd")
 
@@ -154,10 +154,6 @@ _RESIDUALS: Final = {
         template("Measured minus identified over the distance; the band is ± two standard deviations of the data."),
         Message("Residuals over the distance."),
     ),
-    "marks": (
-        template("Measured minus identified place by place; the band is ± two standard deviations of the data."),
-        Message("Residuals place by place."),
-    ),
 }
 """Caption and alternative text of the residuals of each kind of data."""
 _RESIDUAL_LABELS: Final = {
@@ -165,9 +161,6 @@ _RESIDUAL_LABELS: Final = {
     "y (m)": Message("y\nmeasured − identified (m)"),
     "speed (m/s)": Message("speed\nmeasured − identified (m/s)"),
     "time (s)": Message("time\nmeasured − identified (s)"),
-    "depth (mm)": Message("depth\nmeasured − identified (mm)"),
-    "width (mm)": Message("width\nmeasured − identified (mm)"),
-    "turn radius (m)": Message("turn radius\nmeasured − identified (m)"),
 }
 
 
@@ -265,7 +258,6 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
     x_labels = {
         "track": Message("time (s)"),
         "photo_cells": Message("distance from the start (m)"),
-        "marks": Message("place"),
     }
     rows[-1].set_xlabel(x_labels[fits[0].kind])
     figure.align_ylabels()

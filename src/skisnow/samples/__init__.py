@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import struct
 from datetime import UTC, datetime, timedelta
 from importlib.resources import as_file, files
@@ -13,12 +12,11 @@ import numpy as np
 
 from .._support.errors import OutputError
 from .._support.staging import require_writable, staged, write_file
-from .._support.units import DEGREE, MM, STANDARD_GRAVITY
+from .._support.units import DEGREE, STANDARD_GRAVITY
 from ..campaign import write_reference
 from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
-from ..carving.equilibrium import carve
 from ..interop.caaml import caaml_text
-from ..scenario import Plane, Scenario, load_scenario
+from ..scenario import Plane, load_scenario
 from ..simulation.simulated_run import simulate
 from ..track.projection import GeodeticPoint, earth_centred, geodetic
 from ..track.slope_frame import slope_axes
@@ -277,7 +275,6 @@ def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
     yield "measured.gpx", _track_gpx(usual, random)
     yield "run-1.gpx", _track_gpx(usual, random)
     yield "run-2.gpx", _track_gpx(other, random)
-    yield "marks.csv", _grooves(usual.scenario, random)
 
 
 def _simulate_sample(**changes: float) -> Run:
@@ -295,24 +292,3 @@ def _track_gpx(run: Run, random: np.random.Generator) -> str:
     assert isinstance(slope, Plane)
     place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)
     return gpx_track(place, run.time[::_EVERY], slope_angle=slope.angle)
-
-
-def _grooves(scenario: Scenario, random: np.random.Generator) -> str:
-    """CSV of the groove that a scenario's ski leaves in a steady carve: depth, width and radius at eight places."""
-    sledge, slope, contact = scenario.sledge, scenario.slope, scenario.contact
-    assert isinstance(slope, Plane)
-    load = (sledge.mass + 2.0 * scenario.ski.mass) * scenario.gravity * math.cos(slope.angle) / 2.0
-    answer = carve(
-        scenario.ski, contact.snow, edge_angle=sledge.edge_angle, load=load, unloading_ratio=contact.unloading_ratio
-    )
-    deepest = float(np.max(np.asarray(answer.edge_depth)))
-    depth = deepest * (1.0 - 1.0 / contact.unloading_ratio) / MM
-    width = deepest / math.tan(sledge.edge_angle) / MM
-    rows = ["depth_mm,width_mm,turn_radius_m,depth_sd_mm,width_sd_mm,turn_radius_sd_m"]
-    for _ in range(8):
-        noise = random.standard_normal(3)
-        rows.append(
-            f"{depth + 0.2 * noise[0]:.2f},{width + 0.5 * noise[1]:.2f},"
-            f"{answer.turn_radius_chord + 0.3 * noise[2]:.2f},0.2,0.5,0.3"
-        )
-    return "\n".join((*rows, ""))

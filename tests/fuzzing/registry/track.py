@@ -1,4 +1,4 @@
-"""Readers of tracks, photo cells, grooves, gates and lines."""
+"""Readers of tracks, photo cells, gates and lines."""
 
 from functools import cache
 from pathlib import Path
@@ -23,7 +23,6 @@ _FORMATS: dict[str, tuple[tuple[Mutation, ...], Seal | None]] = {
     ".pos": (TEXT, None),
 }
 _CELLS = b"run,station_m,time_s,time_sd_s\nfirst,20,3.34,0.01\nfirst,40,5.1,0.01\nfirst,60,6.5,0.02\n"
-_GROOVES = b"depth_mm,width_mm,turn_radius_m\n12.5,40,14\n13,41,\n11,38,15.5\n12,,15\n"
 _COURSE = b"gate,x_m,y_m,side,outer_x_m,outer_y_m\n1,10,3,left,10,8\n2,20,-3,right,20,-8\n3,30,3,left,,\n"
 _GATES = b"gate,outcome,time_s,x_m,y_m\n1,passed,1.5,10,3\n2,missed,,20,-3\n3,passed,4.5,30,3\n"
 _LINE = b"gate,aside_m,along,turning,speed,apex_x_m\n1,0.8,0.5,0.6,1,10\n2,0.9,0.4,0.5,1,20\n3,0.8,0.5,0.6,1,30\n"
@@ -71,7 +70,6 @@ _DATA = ("identification.data:_head", "identification.data_tables:_read_rows")
 READERS = (
     *map(_track, FILES),
     single_file("photo cells", _CELLS, read_data, TABLE, *_DATA, target="cells.csv"),
-    single_file("grooves", _GROOVES, read_data, TABLE, *_DATA, target="grooves.csv"),
     single_file(
         "course.csv", _course_folder, lambda path: repr(read_course(path)), TABLE,
         "track.course.course_file:read_course", "_support.spreadsheet_text:csv_rows",
