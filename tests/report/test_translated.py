@@ -22,7 +22,7 @@ from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, local_axes, site_styles
-from skisnow.report.formatting import days_words, figure_text
+from skisnow.report.formatting import figure_text
 from skisnow.report.race.figures import gap_drawings
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
@@ -110,11 +110,6 @@ def test_text_of_users_is_not_translated() -> None:
         )
     assert re.findall(r"<th [^>]*>([^<]*)</th>", html) == ["Messort", "Snow", "Site"]
     assert "</b> Schnee</caption>" in html
-
-
-def test_dates_are_written_as_a_german_reader_writes_them() -> None:
-    with in_language("de"):
-        assert days_words("2026-02-28", "2026-03-12").striptags() == "28. Februar 2026 bis 12. März 2026"
 
 
 def written(drawing: Drawing) -> Iterator[str]:

@@ -14,8 +14,7 @@ from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.forces.penetration import LayeredPoint, ProfilePoint
 from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
-from skisnow.scenario import Profile, SnowMap, load_scenario, read_snow_map, scenario_file
-from skisnow.scenario.plausibility import implausible_values
+from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
 from skisnow.scenario.sledge import Shear
 from skisnow.scenario.snow_map import read_snow_layers
 from skisnow.simulation.run_setup import laid_out
@@ -300,13 +299,3 @@ def test_growing_hardness_alone_is_a_law_and_needs_one_hardness(tmp_path: Path) 
     for wrong in ({"snow_map": SnowMap(hardness=Grid.along([0.0, 9.0], np.array([1e8, 2e8])))}, {"layers": layers}):
         with raises(ParameterError, "contradiction"):
             replace(growing, **wrong)
-
-
-@pytest.mark.parametrize(("angle_deg", "warnings"), [(10.0, 1), (18.0, 0)])
-def test_the_drop_of_a_course_is_that_of_its_slope(angle_deg: float, warnings: int) -> None:
-    """A plane, and a profile that falls as far for each metre of x."""
-    given = {"course.name": "giant-slalom-20-gates", "course.discipline": "giant-slalom", "slope.angle_deg": angle_deg}
-    x = np.linspace(-50.0, 800.0, 200)
-    plane = load_scenario("carved-46m", changes=given)
-    for each in (plane, plane.with_(slope=Profile(x, -math.sin(math.radians(angle_deg)) * x))):
-        assert sum("FIS" in text for text in implausible_values(each)) == warnings

@@ -48,11 +48,6 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         metavar="FILE",
         help="gates, CSV or GPX: says which were passed, and when",
     )
-    parser.add_argument(
-        "--discipline",
-        choices=("slalom", "giant-slalom"),
-        help="with --course: check the course against the rules of this discipline",
-    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF) and track.json")
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
@@ -61,8 +56,6 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 def summarise(options: argparse.Namespace) -> int:
     """Read a track, print its summary, and write its report if a folder is given."""
-    if options.discipline is not None and options.course is None:
-        options.parser.error("--discipline needs --course: name the file of the gates")
     prepare_output(options.out)
     course = None if options.course is None else _read_course(options)
     with announced(f"reading {options.file}"):
@@ -104,10 +97,10 @@ def summarise(options: argparse.Namespace) -> int:
 
 
 def _read_course(options: argparse.Namespace) -> Course:
-    from ..track.course import course_warnings, read_course
+    from ..track.course import read_course
 
-    course = read_course(options.course, discipline=options.discipline)
-    print_warnings((*course.warnings, *course_warnings(course)))
+    course = read_course(options.course)
+    print_warnings(course.warnings)
     return course
 
 

@@ -1,23 +1,20 @@
-"""Numbers, dates, rows, JSON, symbols and names of users as text, HTML and text of figures."""
+"""Numbers, rows, JSON, symbols and names of users as text, HTML and text of figures."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from datetime import UTC, date, datetime
 from typing import Any, Final, Literal, TypeAlias
 
 from markupsafe import Markup
 
 from .._support.messages import (
-    ENGLISH,
     LocalFormatter,
     Message,
     current_language,
     decimal_sign,
     local_number,
-    template,
     translations,
 )
 from .._support.units import Shown
@@ -151,61 +148,6 @@ def counted(number: int, singular: str, plural: str) -> str:
 def whole(number: int) -> str:
     """Text of a count; five digits and more are grouped by thousands."""
     return str(number) if abs(number) < 10_000 else f"{number:,}".replace(",", "\u202f")
-
-
-_MONTHS: Final = (
-    template("January"), template("February"), template("March"), template("April"), template("May"),
-    template("June"), template("July"), template("August"), template("September"), template("October"),
-    template("November"), template("December"),
-)  # fmt: skip
-
-
-def date_words(day: date) -> str:
-    """A date with its month as a word, in the current language.
-
-    >>> date_words(date(2026, 1, 9))
-    '9 January 2026'
-    """
-    number = f"{day.day}" if current_language() == ENGLISH else f"{day.day}."
-    return f"{number} {Message(_MONTHS[day.month - 1])} {day.year}"
-
-
-def days_words(first: str, last: str) -> Markup:
-    """First and last day of a campaign (ISO dates; other text is not changed).
-
-    >>> print(days_words("2026-01-09", "2026-01-12").striptags())
-    9 January 2026 to 12 January 2026
-    >>> print(days_words("2025-12-30", "2026-02-30").striptags())
-    30 December 2025 to 2026-02-30
-    """
-    begin, end = (_time_element(day, _day_words(day)) for day in (first, last))
-    return begin if first == last else prose("{low} to {high}", low=begin, high=end)
-
-
-def _day_words(day: str) -> str:
-    try:
-        return date_words(date.fromisoformat(day))
-    except ValueError:
-        return day
-
-
-def moment_words(moment: str) -> Markup:
-    """Day and minute of an ISO time, in UTC if it has a time zone.
-
-    >>> print(moment_words("2026-01-09T14:58:12+00:00").striptags())
-    9 January 2026, 14:58 UTC
-    """
-    try:
-        time = datetime.fromisoformat(moment)
-    except ValueError:
-        return Markup.escape(moment)
-    zone = "" if time.tzinfo is None else " UTC"
-    time = time if time.tzinfo is None else time.astimezone(UTC)
-    return _time_element(moment, f"{date_words(time)}, {time:%H:%M}{zone}")
-
-
-def _time_element(iso_time: str, words: str) -> Markup:
-    return Markup('<time datetime="{}">{}</time>').format(iso_time, words)
 
 
 SYMBOL: Final = re.compile(r"(?:(?<![\w<>/])|(?<=_[A-Za-z0-9]/))([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")

@@ -18,10 +18,8 @@ from ..forces.parameter_checks import (
 )
 from ..ski import Ski
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
-from ..track.course import course_warnings
 from .scenario import Scenario
 from .slope import Plane
-from .terrain import heights_of
 
 
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:
@@ -31,7 +29,6 @@ def implausible_values(scenario: Scenario) -> tuple[str, ...]:
         *_like_radians(scenario),
         *_like_another_unit(scenario),
         *_outside_ranges(scenario),
-        *_course_departures(scenario),
         *_short_boots(scenario),
     )
 
@@ -68,18 +65,6 @@ def _like_another_unit(scenario: Scenario) -> list[str]:
             converted=hardness / N_PER_MM3,
         )
     ]
-
-
-def _course_departures(scenario: Scenario) -> tuple[str, ...]:
-    course = scenario.course
-    if course is None:
-        return ()
-    (first_x, first_y), (last_x, last_y) = course.gates[0].turning, course.gates[-1].turning
-    if isinstance(scenario.slope, Plane):
-        drop = math.sin(scenario.slope.angle) * (last_x - first_x)
-    else:
-        drop = float(heights_of(scenario.slope, first_x, first_y) - heights_of(scenario.slope, last_x, last_y))
-    return course_warnings(course, drop=drop)
 
 
 def _short_boots(scenario: Scenario) -> list[str]:

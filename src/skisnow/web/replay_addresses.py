@@ -22,8 +22,8 @@ from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, replay_bytes, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
-from ..report.track.page import file_of_track, page_of_folders, page_of_track, page_of_tracks
-from ..report.track.summary import GPX_FILE, TURNS_FILE
+from ..report.track.page import page_of_folders, page_of_track, page_of_tracks, turns_of_track
+from ..report.track.summary import TURNS_FILE
 from ..ski import Ski, read_ski
 from .elements import plain_page
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
@@ -36,7 +36,6 @@ LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
 GATES: Final = f"{LIST}/gates"
 TURNS: Final = f"{LIST}/turns"
-TRACK_FILES: Final = {TURNS_FILE: "text/csv", GPX_FILE: "application/gpx+xml"}  # media type of each file of a track
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"
@@ -146,16 +145,14 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
         work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
         return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
 
-    def track_file(request: Request, track: str, file: str) -> Response:  # noqa: ARG001 -- of an error page
-        if file not in TRACK_FILES:
-            return PlainTextResponse("", 404)
+    def turns_table(request: Request, track: str) -> Response:  # noqa: ARG001 -- of an error page
         path, placing = tracks.file(track)
-        text = confined(BOUNDS, file_of_track, path, placing.called, file)
-        return _download(text, f"{track}-{file}", TRACK_FILES[file])
+        text = confined(BOUNDS, turns_of_track, path, placing.called)
+        return _download(text, f"{track}-{TURNS_FILE}", "text/csv")
 
     _add_route(app, GATES, gates, is_page=True)
     _add_route(app, TURNS, turns, is_page=True)
-    _add_route(app, f"{TURNS}/{{file}}", track_file, is_page=True)
+    _add_route(app, f"{TURNS}/{TURNS_FILE}", turns_table, is_page=True)
 
 
 def _add_route(app: FastAPI, place: str, answer: Callable[..., Response], *, is_page: bool = False) -> None:

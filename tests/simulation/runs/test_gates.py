@@ -15,7 +15,6 @@ from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.report.figures.course import edge_angles
 from skisnow.scenario import load_scenario
-from skisnow.scenario.plausibility import implausible_values
 from skisnow.simulation.simulated_run import _through_gates, simulate
 from skisnow.track.course import course_names
 from tests.coded import coded, raises
@@ -109,20 +108,10 @@ def test_a_course_of_the_catalogue_or_of_a_file_is_read_with_the_scenario(tmp_pa
 def test_refusals_of_a_course() -> None:
     for changes, expected in (
         ({"course.name": "slalom-21"}, coded("unknown_name", name="slalom-21", similar="slalom-20-gates")),
-        ({"course.discipline": "slalom"}, coded("contradiction", key="discipline")),
         ({"course.file": "none.csv"}, coded("cannot_read", path=Path("none.csv"))),
     ):
         with raises(ParameterError, expected):
             load_scenario("carved-46m", changes=changes)
-
-
-def test_giant_slalom_keeps_to_its_rules_and_says_where_it_does_not() -> None:
-    given = {"course.name": "giant-slalom-20-gates", "course.discipline": "giant-slalom"}
-    steep = load_scenario("carved-46m", changes=given | {"slope.angle_deg": 18.0})  # 456 m down: 141 m of drop
-    assert [each for each in implausible_values(steep) if "FIS" in each] == []
-    flat = [each for each in implausible_values(load_scenario("carved-46m", changes=given)) if "FIS" in each]
-    assert len(flat) == 1
-    assert "19 times" in flat[0] and "9 to 12" in flat[0]
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -141,5 +130,3 @@ def test_track_with_a_course_on_the_command_line(tmp_path: Path, capsys: pytest.
     assert (tmp_path / "o" / "figures" / "course.png").is_file()
     table = (tmp_path / "o" / "gates.csv").read_text(encoding="utf-8")
     assert table.startswith("gate,side,outcome,time_s,")
-    with pytest.raises(SystemExit):
-        main(["track", str(tmp_path / "track.csv"), "--discipline", "slalom"])

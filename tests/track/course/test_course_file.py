@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import load_scenario
 from skisnow.simulation.run_summary import time_gates
-from skisnow.track.course import Course, Gate, MovingPoint, course_warnings, on_slope, passages, read_course
+from skisnow.track.course import Course, Gate, MovingPoint, on_slope, passages, read_course
 from skisnow.track.course.course_file import _bends
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
@@ -42,14 +42,14 @@ def gpx(points: list[tuple[float, float, str]]) -> str:
 
 
 def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
-    found = read_course(written(tmp_path, HEAD + ROWS), discipline="slalom")
+    found = read_course(written(tmp_path, HEAD + ROWS))
     assert [gate.name for gate in found.gates] == ["1", "2", "3"]
     assert [gate.turning for gate in found.gates] == [(10.0, -1.0), (20.0, 1.0), (30.0, -1.0)]
     assert [gate.side for gate in found.gates] == ["left", "right", "left"]
     assert [gate.outer for gate in found.gates] == [(10.0, 4.0), (20.0, -4.0), None]
     assert [gate.width for gate in found.gates] == [5.0, 5.0, math.inf]
     assert found.length == pytest.approx(2.0 * math.hypot(10.0, 2.0))
-    assert (found.axes, found.discipline, found.warnings) == ("metres", "slalom", ())
+    assert (found.axes, found.warnings) == ("metres", ())
     assert "3 gates" in repr(found) and "20.4 m" in repr(found)
 
 
@@ -175,34 +175,6 @@ def test_degrees_need_to_know_where_x_points(tmp_path: Path) -> None:
         read_course(path, latitude_deg=47.0)
 
 
-def giant(*, apart: float = 24.0, width: float = 6.0, number: int = 5) -> Course:
-    gates = []
-    for i in range(number):
-        side, y = ("left", 3.0) if i % 2 else ("right", -3.0)
-        outer = (apart * i, y + (width if i % 2 else -width))
-        gates.append(Gate(name=str(i + 1), turning=(apart * i, y), side=side, outer=outer))  # type: ignore[arg-type]
-    return Course(gates=tuple(gates), discipline="giant-slalom")
-
-
-def test_rules_of_giant_slalom() -> None:
-    """ICR 901.2.3: 4 to 8 m wide, 10 m apart; 901.2.4: 4 changes of direction fit 27 to 36 m of drop."""
-    assert course_warnings(giant(), drop=30.0) == ()
-    assert course_warnings(giant(), drop=None) == course_warnings(giant(), drop=0.0) == ()
-    (few,) = course_warnings(giant(), drop=0.8)
-    assert "4 times" in few and "0 to 0" in few
-    narrow = course_warnings(giant(width=3.0))[0]
-    assert "3.00 m" in narrow and "4 to 8 m" in narrow
-    assert len(course_warnings(giant(width=9.0))) == 5
-    near = course_warnings(giant(apart=7.0))
-    assert "9.22 m" in near[0]  # 7 m down and 6 m across
-    assert len(near) == 4
-    (many,) = course_warnings(giant(), drop=60.0)
-    assert "60 m" in many and "7 to 9" in many
-
-    assert course_warnings(replace(giant(width=3.0), discipline="slalom"), drop=60.0) == ()
-    assert course_warnings(replace(giant(width=3.0), discipline=None), drop=60.0) == ()
-
-
 def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
     """Down a plane the incline is longer than the map; over a profile x stays horizontal."""
     named = [(east, north, f"<name>{i}</name><type>gate {side}</type>") for i, (east, north, side) in enumerate(POINTS)]
@@ -213,7 +185,7 @@ def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
     changes = {"course.file": file} | {f"course.{name}": value for name, value in place.items()}
     incline = load_scenario("carved-46m", changes={"slope.angle_deg": 20.0})
     plane = load_scenario("carved-46m", changes={**changes, "slope.angle_deg": 20.0}).course
-    degrees = read_course(file, **place)  # type: ignore[arg-type]
+    degrees = read_course(file, **place)
     bent = {"slope.kind": "profile", "slope.profile": str(tmp_path / "profile.csv")}
     profile = load_scenario("carved-46m", changes={**changes, **bent}).course
     stretch = 1.0 / math.cos(math.radians(20.0))

@@ -20,7 +20,7 @@ from ...estimation import Analysis
 from ...estimation.results import results_pieces
 from ..figures.drawing import Drawing, LeftOut, Picture, Progress, picture_files, silent, write_pictures
 from ..figures.style import SiteStyle, site_styles
-from ..formatting import days_words, moment_words, significant
+from ..formatting import significant
 from ..sheet import cited_text, render_template
 from ..table import Table, table_csv, table_html
 from .data import ReportData
@@ -170,8 +170,8 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
         "stated": _stated_uncertainties(results["campaign"]),
         "synthetic": data.synthetic,
-        "dates": None if data.dates is None else days_words(*data.dates),
-        "analysed": moment_words(results["provenance"]["time"]),
+        "dates": _dates(data),
+        "analysed": results["provenance"]["time"],
         "headline": headline(data),
         "verdicts": verdicts(results),
         "counts": data.counts,
@@ -185,6 +185,14 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "titles": SECTIONS,
         "numbers": {name: number for number, name in enumerate(ids, start=1)},
     }
+
+
+def _dates(data: ReportData) -> str | None:
+    """First and last day of the campaign, None without one."""
+    if data.dates is None:
+        return None
+    first, last = data.dates
+    return first if first == last else Message("{low} to {high}", low=first, high=last)
 
 
 def _stated_uncertainties(campaign: dict[str, Any]) -> dict[str, str]:

@@ -17,7 +17,6 @@ from ..._support.messages import Message
 from ..._support.units import Facts, Shown, ShownFields, amount
 from ...parameters import Allowed, Label, Quantity, Word, require_declared
 
-Discipline: TypeAlias = Literal["slalom", "giant-slalom"]
 CourseAxes: TypeAlias = Literal["metres", "east_north_up"]
 
 FEWEST_GATES: Final = 2
@@ -46,8 +45,6 @@ class Course(Shown):
         At least two gates.
     source
         Name of the course or of its file.
-    discipline
-        Discipline whose rules are checked; None: no rules.
     latitude_deg, longitude_deg, fall_line_azimuth_deg
         Place of the scenario's x = y = 0 and direction of its x, for gates in degrees.
     axes
@@ -83,11 +80,6 @@ class Course(Shown):
             names_file=True,
         ),
     ] = Message("given as numbers")
-    discipline: Annotated[
-        Discipline | None,
-        Quantity("course.discipline", "whose rules the course is checked against; default: no rules"),
-        Label(Message("discipline")),
-    ] = None
     latitude_deg: Annotated[
         float | None,
         Quantity(
@@ -161,8 +153,7 @@ class Course(Shown):
         return float(np.linalg.norm(np.diff([gate.turning for gate in self.gates], axis=0), axis=1).sum())
 
     def _repr_facts(self) -> Facts:
-        kind = f"{self.discipline}, " if self.discipline else ""
-        return Facts(f"{kind}{len(self.gates)} gates, {amount(self.length, 'm')} from pole to pole: {self.source}")
+        return Facts(f"{len(self.gates)} gates, {amount(self.length, 'm')} from pole to pole: {self.source}")
 
 
 def _gate_line(gate: Gate, along: FloatArray) -> GateLine:

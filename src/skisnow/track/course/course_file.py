@@ -1,4 +1,4 @@
-"""Reader of courses (CSV in metres, GPX in degrees), courses in the axes of a slope, and rules of the FIS."""
+"""Reader of courses (CSV in metres, GPX in degrees), and courses in the axes of a slope."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..._support.units import DEGREE
 from ..._support.user_files import ContentError, Element, plain_bytes, xml_tree
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
-from .course import Course, Discipline, Gate, Side, course_names, course_place
+from .course import Course, Gate, Side, course_names, course_place
 
 SHARPEST: Final = 0.05
 """Smallest bend (rad) of the line from pole to pole that determines a gate's side."""
@@ -33,7 +33,6 @@ _ACTION: Final = Message(
 def read_course(
     path: str | Path,
     *,
-    discipline: Discipline | None = None,
     latitude_deg: float | None = None,
     longitude_deg: float | None = None,
     fall_line_azimuth_deg: float | None = None,
@@ -46,8 +45,6 @@ def read_course(
         A name of `course_names`, or the path of a file: CSV with the columns ``gate``, ``x_m``, ``y_m``, ``side``, and,
         if the outer poles are known, ``outer_x_m``, ``outer_y_m``; or GPX with one waypoint for each gate, in their
         order, whose type, symbol, comment, description or name contains left or right.
-    discipline
-        Discipline whose rules `course_warnings` checks.
     latitude_deg, longitude_deg
         Origin of x and y for gates of a GPX file (default: its first waypoint).
     fall_line_azimuth_deg
@@ -73,9 +70,7 @@ def read_course(
     """
     name = str(path)
     path = course_place(name) if name in course_names() else Path(path)
-    options: dict[str, Any] = {
-        "source": name, "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
-    }  # fmt: skip
+    options: dict[str, Any] = {"source": name, "fall_line_azimuth_deg": fall_line_azimuth_deg}
     if (latitude_deg is None) != (longitude_deg is None):
         raise ParameterError("{path}: latitude and longitude of the origin go together; give both, or neither").tag(
             "half_place", path=path
@@ -243,52 +238,3 @@ def _waypoint_number(path: str | Path, row: int, what: str, text: str | None, li
     raise ParameterError(
         "{path}, waypoint {row}, {what}: {text!r} is not a number from {lowest:g} to {limit:g}; correct it"
     ).tag("not_a_number", path=path, row=row, what=what, text=text, lowest=-limit, limit=limit)
-
-
-_ARTICLE: Final = "FIS ICR 901.2"
-"""Rules of giant slalom, in book IV of the International Ski Competition Rules."""
-_WIDTH: Final = (4.0, 8.0)
-"""Minimum and maximum width of a gate (m)."""
-_LEAST_DISTANCE: Final = 10.0
-"""Minimum distance between the nearest poles of successive gates (m)."""
-_TURNS_PER_DROP: Final = (0.11, 0.15)
-"""Minimum and maximum number of changes of direction per metre of drop."""
-
-
-def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, ...]:
-    """Sentences on departures of a giant slalom from its rules, which are allowed for training.
-
-    course: Course with its discipline.
-    drop: Difference in height from the first gate to the last (m); None if unknown.
-
-    Notes
-    -----
-    Giant slalom: gates 4 to 8 m wide, 10 m or more between the nearest poles of successive gates (ICR 901.2.3), and
-    changes of direction for 11 to 15 % of the metres of drop (901.2.4; of the whole course, start to finish). Slalom is
-    not checked, because no citable text was available.
-    """
-    if course.discipline != "giant-slalom":
-        return ()
-    low, high = _WIDTH
-    warnings = [
-        f"gate {gate.name} is {gate.width:.2f} m wide; {_ARTICLE} asks for {low:g} to {high:g} m"
-        for gate in course.gates
-        if gate.outer is not None and not low <= gate.width <= high
-    ]
-    for before, gate in zip(course.gates, course.gates[1:], strict=False):
-        poles = [np.array([pole for pole in (one.turning, one.outer) if pole is not None]) for one in (before, gate)]
-        apart = float(np.linalg.norm(poles[0][:, None] - poles[1][None], axis=2).min())
-        if apart < _LEAST_DISTANCE:
-            warnings.append(
-                f"gates {before.name} and {gate.name} are {apart:.2f} m apart; {_ARTICLE} asks for "
-                f"{_LEAST_DISTANCE:g} m or more between their nearest poles"
-            )
-    if drop is not None and drop > 0.0:
-        least, most = (round(share * drop) for share in _TURNS_PER_DROP)
-        turns = sum(one.side != other.side for one, other in zip(course.gates, course.gates[1:], strict=False))
-        if not least <= turns <= most:
-            warnings.append(
-                f"the course changes its direction {turns} times over {drop:.0f} m of drop; {_ARTICLE} asks for "
-                f"{least} to {most}"
-            )
-    return tuple(warnings)
