@@ -1,6 +1,5 @@
 """A short run in every format of receivers: 12 points, 8 m/s, southwards, over a gentle bend."""
 
-from collections.abc import Callable
 from math import cos, sin
 from typing import Final
 
@@ -94,19 +93,10 @@ def _pos() -> str:
         "% program : RTKPOST\n% (lat/lon/height=WGS84/ellipsoidal,Q=1:fix)\n%  GPST  latitude(deg) longitude(deg)"
         "  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  sdne(m)  sdeu(m)  sdun(m) age(s)  ratio\n"
     )
-    return head + _solutions(lambda i: f"   {_lat(i):.9f}   {_lon(i):.9f}  {_height(i):.4f}  ")
-
-
-def _solutions(place: Callable[[int], str]) -> str:
-    return "".join(f"2022/12/27 15:51:{14 + i}.000{place(i)} {_POSITION_TAIL}\n" for i in range(_COUNT))
-
-
-def _baseline() -> str:
-    head = (
-        "% ref pos : 47.0 11.0 1500.0\n%  UTC  e-baseline(m)  n-baseline(m)  u-baseline(m)   Q  ns   sde(m)   sdn(m)"
-        "   sdu(m)  sden(m)  sdnu(m)  sdue(m) age(s)  ratio\n"
+    return head + "".join(
+        f"2022/12/27 15:51:{14 + i}.000   {_lat(i):.9f}   {_lon(i):.9f}  {_height(i):.4f}   {_POSITION_TAIL}\n"
+        for i in range(_COUNT)
     )
-    return head + _solutions(lambda i: f" {2 * sin(0.3 * i):.4f} {-8.0 * i:.4f} {-1.4 * i:.4f}")
 
 
 FILES: Final = {
@@ -118,5 +108,4 @@ FILES: Final = {
     "receiver.nmea": _nmea(),
     "receiver.ubx": _ubx(),
     "llh.pos": _pos().encode(),
-    "base.pos": _baseline().encode(),
 }

@@ -83,8 +83,6 @@ HEADS = {
     "model_tests": "full reduced F df1 df2 p rmse_change_percent valid_classically",
     "errors_in_depth": "row procedure a0 a1 b0 b1 at_bound rmse_N rmse_free_N",
     "hardness_by_procedure": "experiment site used H_V_N_per_mm3 H_V_fitted_N_per_mm3 relative_scatter",
-    "seating_distribution": "quantile depth_offset_mm H_V_change_percent",
-    "seating_largest": "experiment site edge_angle_deg H_V_N_per_mm3 depth_offset_mm H_V_change_percent",
     "seating": "experiment site used depth_offset_mm H_V_change_percent",
     "hardness_growth_sites": "site n growth_percent",
     "hardness_growth": "experiment site used H_V_N_per_mm3 H_0_N_per_mm3 growth_percent",

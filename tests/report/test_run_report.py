@@ -98,7 +98,7 @@ def test_outcome_and_numbers_are_those_of_the_run(html: str) -> None:
     assert "median turn radius 12.0 m" in html
     # a right angle less than a half turn: 8/12 × 4 s = 152.8°, half of it to each side
     assert "Heading from −76.4° to 76.4°" in html
-    assert "elements 40, line spacing 0.0200 m." in html
+    assert "elements 40, line_spacing_m 0.02." in html
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -26,7 +26,7 @@ from skisnow.report.turn.chain import (
 )
 from skisnow.report.turn.figures import TimedTrack, loaded_skis
 from skisnow.report.turn.page import FIGURES, contacts_table, parameters_table, shares_table, write_turn_report
-from skisnow.report.turn.sentences import contrast, key_sentences, meaning
+from skisnow.report.turn.sentences import best_measurement, contrast, key_sentences
 from skisnow.scenario.identify_section import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties
@@ -115,9 +115,9 @@ def test_what_was_measured_beside_them_is_in_the_table_and_is_narrowed_by_furthe
     drawn = np.exp(np.random.default_rng(4).uniform(-1.0, 1.0, (50, 1)))
     runs = drawn_over(("snow.shear_displacement_mm",), np.log(drawn[:, 0]), drawn)
     known = replace(chain, snow=snow, ensemble=runs, measured=measured_of(snow))
-    said = " ".join(str(each.striptags()) for each in (*key_sentences(known), *meaning(known)))
+    said = " ".join(str(each.striptags()) for each in (*key_sentences(known), *best_measurement(known)))
     assert "9.00 [6.00, 16.0]" in said and "0.250 mm [0.200, 0.300]" in said
-    assert said != " ".join(str(each.striptags()) for each in meaning(replace(chain, ensemble=runs)))
+    assert said != " ".join(str(each.striptags()) for each in best_measurement(replace(chain, ensemble=runs)))
 
 
 def test_contacts_stand_with_their_own_numbers(chain: TurnChain) -> None:

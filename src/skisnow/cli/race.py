@@ -57,9 +57,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_workers(parser)
     add_scheduler(parser)
     parser.add_argument("--json", action="store_true", help="print race.json alone to standard output")
-    parser.add_argument(
-        "--out", type=Path, required=True, metavar="DIR", help="write race.json, line.csv, evaluations.csv and figures"
-    )
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="write race.json, line.csv and figures")
     parser.set_defaults(run=run)
 
 

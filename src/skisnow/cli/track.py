@@ -57,7 +57,12 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 def summarise(options: argparse.Namespace) -> int:
     """Read a track, print its summary, and write its report if a folder is given."""
     prepare_output(options.out)
-    course = None if options.course is None else _read_course(options)
+    if options.course is None:
+        course = None
+    else:
+        from ..track.course import read_course
+
+        course = read_course(options.course)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
 
@@ -94,14 +99,6 @@ def summarise(options: argparse.Namespace) -> int:
             )
         print(f"Figures: {written.parent / 'figures'}", file=sys.stderr)
     return 0
-
-
-def _read_course(options: argparse.Namespace) -> Course:
-    from ..track.course import read_course
-
-    course = read_course(options.course)
-    print_warnings(course.warnings)
-    return course
 
 
 def _course_origin(course: Course) -> GeodeticPoint | None:

@@ -138,8 +138,7 @@ class Analysis(Shown):
     def plot(self, what: str = "force_depth") -> Any:
         """One figure of the report.
 
-        what: Name of the figure, such as "force_depth", "model_rmse", "residuals", "hardness_density" or
-            "stress_angle".
+        what: Name of the figure, such as "force_depth", "residuals", "hardness_density" or "stress_angle".
         Returns: A new figure; no window is opened.
         Raises ParameterError: unknown figure (code ``unknown_figure``), or no data for it (``no_data``).
         """
@@ -166,15 +165,6 @@ class Analysis(Shown):
         from ..report.campaign.summary import analysis_dataframe
 
         return analysis_dataframe(self, kind)
-
-    def to_xarray(self) -> Any:
-        """All experiments with their results, units as attributes; needs xarray (``skisnow[xarray]``).
-
-        Returns: Over the dimensions ``penetration_experiment`` and ``shear_experiment``.
-        """
-        from ..report.campaign.summary import analysis_dataset
-
-        return analysis_dataset(self)
 
     def _repr_facts(self) -> Facts:
         selected = self.penetration.selected if self.penetration is not None else None

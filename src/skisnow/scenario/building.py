@@ -53,7 +53,7 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     }
     if not any(name.startswith("skier.") for name in values):
         parts["skier"] = None
-    return build_declared(Scenario, values, **parts), (*ski_warnings, *(course.warnings if course else ()))
+    return build_declared(Scenario, values, **parts), ski_warnings
 
 
 def _require_key(values: Mapping[str, Any], name: str, remedy: Message) -> None:

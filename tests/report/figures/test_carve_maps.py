@@ -19,7 +19,6 @@ from skisnow.carving.question import carve_question
 from skisnow.comparison import Comparison, compare_tracks
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.page import DRAWERS
-from skisnow.report.campaign.site_figures import model_rmse
 from skisnow.report.carving_figure import arc_through, carved_skis, contact_ends
 from skisnow.report.figures.drawing import PNG_WIDTH, Drawing, require_drawable, write_figure
 from skisnow.report.figures.style import journal_style, site_styles
@@ -30,7 +29,7 @@ from skisnow.studies import StudyTable
 from skisnow.track.track import Track
 from tests.coded import raises
 
-from ..conftest import Reported, altered
+from ..conftest import Reported
 
 ASKED = {"edge_angle_deg": 45, "load_N": 800, "published": "race-piste", "unloading_ratio": 10}
 
@@ -261,24 +260,6 @@ def test_distances_of_which_one_would_hide_another_are_drawn_by_their_logarithm(
     assert max(largest) > 20.0 * min(largest)
     assert along.get_yscale() == "log"
     assert along.get_ylim() == pytest.approx((0.01 * min(largest), 2.0 * max(largest)))
-
-
-def with_rmse(data: ReportData, values: list[float]) -> ReportData:
-    penetration = data.results["penetration"]
-    models = [row | {"rmse_N": value} for row, value in zip(penetration["models"], values, strict=True)]
-    return ReportData(altered(data.analysis, data.results | {"penetration": penetration | {"models": models}}))
-
-
-@pytest.mark.parametrize(("value", "scale"), [(100.0, "linear"), (1000.0, "linear"), (1080.0, "log"), (2.0, "log")])
-def test_rmse_of_another_size_are_drawn_by_their_logarithm(data: ReportData, value: float, scale: str) -> None:
-    """The paper's are 53.6 N to 207 N: twenty times as much is 1072 N, a twentieth of the greatest 10.35 N."""
-    with journal_style():
-        drawing = model_rmse(with_rmse(data, [value] * 9), [])
-    assert isinstance(drawing, Drawing)
-    (axes,) = drawing.figure.axes
-    assert axes.get_xscale() == scale
-    if scale == "linear":
-        assert axes.get_xlim() == pytest.approx((0.0, 1.06 * max(207.0, value)))
 
 
 def track_of(place: FloatArray) -> Track:

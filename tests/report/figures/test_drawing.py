@@ -16,7 +16,7 @@ from skisnow._support.messages import in_language
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.penetration_figures import force_depth, shown_angles
 from skisnow.report.campaign.shear_figures import machining, regression_line, stress_angle
-from skisnow.report.campaign.site_figures import model_rmse, residuals
+from skisnow.report.campaign.site_figures import residuals
 from skisnow.report.figures.drawing import (
     FORMS,
     Drawing,
@@ -70,13 +70,6 @@ def test_laws_of_fig_5_meet_the_last_reading(data: ReportData) -> None:
             assert F[-1] == pytest.approx(492.0, rel=1e-9)
             # the wedge is one to 62 sin 45° = 44 mm, far below all depths here
             assert np.diff(np.log(F)) == pytest.approx(slope * np.diff(np.log(e)), rel=1e-9)
-
-
-def test_dots_of_the_rmse_chart_are_the_rows(data: ReportData) -> None:
-    (axes,) = _axes(data, model_rmse)
-    printed, own = axes.lines
-    assert np.asarray(own.get_xdata()).tolist() == [row["rmse_N"] for row in data.results["penetration"]["models"]]
-    assert np.asarray(printed.get_xdata()).tolist() == [140.0, 58.4, 53.6, 207.0, 75.2, 54.8, 53.8, 54.9, 56.1]
 
 
 def test_residuals_have_the_rmse_of_the_selected_row(data: ReportData) -> None:

@@ -12,7 +12,6 @@ from skisnow._support.errors import ParameterError
 from skisnow.scenario import load_scenario
 from skisnow.simulation.run_summary import time_gates
 from skisnow.track.course import Course, Gate, MovingPoint, on_slope, passages, read_course
-from skisnow.track.course.course_file import _bends
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
 from tests.coded import Coded, coded, raises
@@ -49,7 +48,7 @@ def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
     assert [gate.outer for gate in found.gates] == [(10.0, 4.0), (20.0, -4.0), None]
     assert [gate.width for gate in found.gates] == [5.0, 5.0, math.inf]
     assert found.length == pytest.approx(2.0 * math.hypot(10.0, 2.0))
-    assert (found.axes, found.warnings) == ("metres", ())
+    assert found.axes == "metres"
     assert "3 gates" in repr(found) and "20.4 m" in repr(found)
 
 
@@ -111,15 +110,10 @@ def test_the_same_track_passes_both_at_the_same_times(tmp_path: Path) -> None:
     assert one.times[1] == pytest.approx(17.0 / 9.0)  # the chord from pole 1 to pole 3 is square to its line
 
 
-def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
-    """Going south a pole to the east lies to the left, and is passed on the left, outside the bend."""
-    found = read_course(written(tmp_path, gpx([(e, n, f"<name>g{n:.0f}</name>") for e, n, _ in POINTS]), "course.gpx"))
-    assert [gate.side for gate in found.gates] == ["right", "left", "right", "left"]
-    assert len(found.warnings) == 1
-    assert all(name in found.warnings[0] for name in ("g0", "g-12", "g-24", "g-36"))
-    straight = gpx([(0.0, -10.0 * i, "") for i in range(4)])
-    with raises(ParameterError, "no_side", row=1, name="1"):
-        read_course(written(tmp_path, straight, "course.gpx"))
+def test_a_waypoint_without_a_side_is_rejected(tmp_path: Path) -> None:
+    points = gpx([(e, n, f"<name>g{n:.0f}</name>") for e, n, _ in POINTS])
+    with raises(ParameterError, "no_side", row=1, name="g0"):
+        read_course(written(tmp_path, points, "course.gpx"))
 
 
 @pytest.mark.parametrize("type_", ["<type>left</type>", ""])
@@ -213,25 +207,6 @@ def test_a_track_and_a_course_in_degrees_with_their_own_origins_are_brought_toge
     assert result.times[1] == pytest.approx(37.0 / 9.0, abs=1e-3)
     with raises(ParameterError, "no_origin"):
         time_gates(course, replace(track, origin=None))
-
-
-@pytest.mark.parametrize(
-    ("bend", "side"), [(0.04, None), (0.06, "right"), (-0.04, None), (-0.06, "left"), (2.0, "right")]
-)
-def test_a_bend_tells_a_side_from_a_twentieth_of_a_radian_on(bend: float, side: str | None) -> None:
-    """The turning pole of a bend to the left is passed on the right; an end is passed on the other side."""
-    place = np.array([(0.0, 0.0), (9.0, 3.0)])
-    angle = math.atan2(3.0, 9.0) + bend
-    place = np.vstack([place, place[1] + 20.0 * np.array([math.cos(angle), math.sin(angle)])])
-    other = {"left": "right", "right": "left", None: None}[side]
-    assert _bends(place) == [other, side, other]
-
-
-def test_a_straight_stretch_has_no_sides_whichever_way_it_goes() -> None:
-    """East, north, and then west over three poles: two bends to the left, and none."""
-    assert _bends(np.array([(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (-9.0, 9.0)])) == [
-        "left", "right", "right", None, None,
-    ]  # fmt: skip
 
 
 def test_gates_that_lead_back_to_one_place_have_no_direction() -> None:

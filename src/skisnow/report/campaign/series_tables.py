@@ -6,14 +6,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM
 from ..table import Column, Table, record_table
-from .data import Json, ReportData, numbers, pairs
-
-QUANTILES: Final = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
-LARGEST: Final = 12
+from .data import Json, ReportData, pairs
 
 EXPERIMENT: Final = Column("experiment", Message("Experiment"), "text")
 SITE: Final = Column("site", Message("Site"), "text")
@@ -80,45 +76,6 @@ def count_resolved_offsets(rows: list[Json]) -> int:
     """Number of offsets whose interval excludes zero."""
     ends = pairs(rows, "interval_mm")
     return int(np.sum((ends[:, 0] > 0) | (ends[:, 1] < 0)))
-
-
-def seating_quantiles_table(data: ReportData) -> Table:
-    """Quantiles over the used series of the depth zero's offset, and of the change of H_V if it is subtracted."""
-    names = {0.0: Message("minimum"), 50.0: Message("median"), 100.0: Message("maximum")}
-    quantiles = (names.get(percent, f"{percent:g} %") for percent in QUANTILES)
-    offsets, changes = (_quantiles(numbers(data.seating, key)) for key in ("depth_offset_mm", "H_V_change_percent"))
-    return Table(
-        "seating_distribution",
-        Message(
-            "Offsets of the depth zero over the used series, and what taking them off would do to H_V: quantiles, each "
-            "column by itself."
-        ),
-        (
-            Column("quantile", Message("Quantile"), "words"),
-            Column("depth_offset_mm", Message("offset δ"), unit="mm"),
-            Column("H_V_change_percent", Message("H_V would change by"), unit="%"),
-        ),
-        list(zip(quantiles, offsets, changes, strict=True)) if data.seating else [],
-    )
-
-
-def _quantiles(values: FloatArray) -> list[float | None]:
-    finite = values[np.isfinite(values)]
-    return np.percentile(finite, QUANTILES).tolist() if finite.size else [None] * len(QUANTILES)
-
-
-def seating_largest_table(data: ReportData) -> Table:
-    """The series whose H_V changes most, by factor, without the offset."""
-    changes = numbers(data.seating, "H_V_change_percent")
-    factors = np.abs(np.log(np.maximum(1.0 + changes / 100.0, 1e-6)))
-    order = np.argsort(-factors, kind="stable")[: min(LARGEST, int(np.isfinite(factors).sum()))]
-    caption = Message(
-        "The used series in the order of how much H_V would change, by factor, if their offset were taken off; at most "
-        "{largest} are shown.",
-        largest=LARGEST,
-    )
-    columns = (EXPERIMENT, SITE, ANGLE, HARDNESS, _OFFSET, _CHANGE)
-    return record_table("seating_largest", caption, columns, [data.seating[index] for index in order.tolist()])
 
 
 def seating_table(data: ReportData) -> Table:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,10 +14,9 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM
 from ...campaign.records import DensitySamples
-from ...estimation.models import FORMS, ModelFit
+from ...estimation.models import ModelFit
 from ...estimation.readings import Readings
 from ...estimation.snow_micro_pen import DepthProfile, SnowMicroPenAnalysis, depth_profile
-from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
     BLUE,
@@ -193,55 +191,6 @@ def _samples_by_site(samples: DensitySamples | None) -> dict[str, tuple[FloatArr
 
 MOST_GROUPS: Final = 12
 TOO_FEW: Final = Message("the series are too few, or all at one edge angle")
-_WIDE_RATIO: Final = 20.0
-
-
-def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
-    """Dot chart of the rmse in this campaign (filled) and in the paper (open)."""
-    name, title = "model_rmse", Message("rmse of the nine laws")
-    rows = [row for row in data.results["penetration"]["models"] if row["n"]]
-    if not rows:
-        return LeftOut(name, title, Message("no penetration experiment is used"))
-    if data.results["penetration"]["selected"] is None:
-        return LeftOut(name, title, TOO_FEW)
-    own = [row["rmse_N"] for row in rows]
-    printed = [PRINTED_RMSE_N.get(row["id"], math.nan) for row in rows]
-    finite = [value for value in own + printed if math.isfinite(value)]
-    figure = new_figure(height_mm=70.0)
-    axes = figure.add_subplot()
-    places = range(len(rows))
-    axes.hlines(places, own, printed, color=PALE, linewidth=0.7, zorder=1)
-    dots: dict[str, Any] = {"linestyle": "none", "marker": "D", "color": VERMILLION, "markerfacecolor": "white"}
-    axes.plot(printed, places, zorder=3, label=Message("paper, printed"), **dots)
-    dots = {"linestyle": "none", "marker": "o", "color": BLUE, "markersize": 4.4}
-    axes.plot(own, places, zorder=4, label=Message("this campaign"), **dots)
-    axes.set_yticks(list(places), [_line_label(row, data) for row in rows])
-    axes.invert_yaxis()
-    if max(finite) > _WIDE_RATIO * max(min(finite), 1e-9):
-        axes.set_xscale("log")
-    else:
-        axes.set_xlim(0.0, max(finite) * 1.06)
-    axes.set_xlabel(Message("rmse over all readings (N)"))
-    axes.tick_params(axis="y", length=0)
-    axes.grid(axis="x", color="#E6E6E6", linewidth=0.5)
-    axes.set_axisbelow(True)
-    mark_synthetic(data, axes)
-    legend_below(figure, axes.get_lines()[::-1])
-    caption = prose(
-        "Root-mean-square error of the nine laws over all readings, with the values printed by Mössner and others "
-        "(2013) for their data, which are not public. The pointer marks the selected law."
-    )
-    alt = Message("Dot chart of the rmse of nine laws, this campaign and the paper.")
-    return Drawing(name, caption, alt, figure)
-
-
-def _line_label(row: Json, data: ReportData) -> str:
-    selected = data.results["penetration"]["selected"]
-    terms = "$b = 1$" if row["b"] == "one" else f"$b$ {FORMS[row['b']]}"
-    if row["a"] != "none":
-        terms = f"$a$, $b$ {FORMS[row['b']]}"
-    text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {terms}"
-    return f"▸ {text}" if selected and selected["id"] == row["id"] else text
 
 
 def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001

@@ -352,8 +352,6 @@ BUILDERS: Final = (
     model_tables.fitted_hardness_table,
     series_tables.growth_sites_table,
     series_tables.growth_table,
-    series_tables.seating_quantiles_table,
-    series_tables.seating_largest_table,
     series_tables.seating_table,
     series_tables.unloading_sites_table,
     series_tables.unloading_table,

@@ -49,7 +49,6 @@ def write_race(
     with staged(folder, last=SUMMARY) as stage:
         out = stage.path
         write_line(result.line, out / "line.csv")
-        write_file(out / "evaluations.csv", evaluations_csv(result))
         write_figure(out / "lines.png", lambda: race_lines(result))
         if worth:
             write_file(out / "worth.csv", worth_csv(worth))
@@ -211,16 +210,6 @@ def race_dict(
             for variant in worth
         ],
     }
-
-
-def evaluations_csv(result: QuickestLine) -> str:
-    """Contents of evaluations.csv: one row for each evaluation of the search."""
-    head = ("evaluation", "gates", "passed", "value", "time_s", "outcome")
-    rows = [
-        (entry.number, len(entry.row["turns"]), entry.row["passed"], entry.value, entry.row["time"], entry.row["words"])
-        for entry in result.history
-    ]
-    return csv_text([head, *rows])
 
 
 def worth_csv(variants: Sequence[Worth]) -> str:

@@ -171,7 +171,7 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
     """Sentences about program versions, steps, computing time and files."""
     provenance = summary["provenance"]
     versions = ", ".join(f"{name} {number}" for name, number in provenance.get("versions", {}).items())
-    numbers = ", ".join(map(_number_in_words, run.numbers, run.numbers.values()))
+    numbers = ", ".join(f"{name} {local_number(f'{value:.6g}')}" for name, value in run.numbers.items())
     rate = run.simulated_s / run.wall_s if run.wall_s > 0.0 else None
     return [
         prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
@@ -187,21 +187,6 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
             file=Markup("<code>run.nc</code>"),
         ),
     ]  # fmt: skip
-
-
-_UNITS: Final = {"m": " m", "mm": " mm", "s": " s", "N": " N", "kg": " kg"}  # unit of a number by the end of its name
-
-
-def _number_in_words(name: str, value: float) -> str:
-    """A number of the computation with its name and unit; integers have no decimals.
-
-    >>> _number_in_words("load_N", 390.0), _number_in_words("elements", 92.0)
-    ('load 390 N', 'elements 92')
-    """
-    words, _, unit = name.rpartition("_")
-    words, after = (words, _UNITS[unit]) if unit in _UNITS and words else (name, "")
-    digits = whole(int(value)) if float(value).is_integer() else _number(value)
-    return f"{words.replace('_', ' ')} {digits}{after}"
 
 
 def _angle(angle: float) -> str:

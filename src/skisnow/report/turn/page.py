@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -27,7 +26,6 @@ from ..sheet import Header, Section, sheet
 from ..table import Column, Table
 from .chain import (
     BandShares,
-    EnsembleRun,
     TurnChain,
     afterbody_depth_ratio,
     band_inputs,
@@ -38,7 +36,7 @@ from .chain import (
     used_grip,
 )
 from .figures import FEWEST, draw_runs, track_band
-from .sentences import ensemble_accuracy, ensemble_sentence, headline, key_sentences, meaning
+from .sentences import best_measurement, ensemble_accuracy, ensemble_sentence, headline, key_sentences
 
 
 def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = ENGLISH) -> Path:
@@ -173,10 +171,9 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
             Message("With the unknown inputs varied"),
             words=[drawn, *ensemble_accuracy(chain)],
             pictures=[by_name["band"]],
-            tables=[shares_table(chain), ensemble_table(chain.ensemble)],
-            after=[ensemble_sentence(chain)],
+            tables=[shares_table(chain)],
+            after=[ensemble_sentence(chain), *best_measurement(chain)],
         ),
-        Section("meaning", Message("Meaning"), words=meaning(chain)),
         Section("scenario", Message("Scenario"), tables=[scenario_table(scenario)]),
         Section("provenance", Message("Provenance"), words=[_provenance(chain)]),
     ]
@@ -259,27 +256,6 @@ def _contact_row(name: str, run: Run) -> tuple[Any, ...]:
         float(np.nanmax(run.skis.edge_depth)) / MM,
         afterbody_depth_ratio(run),
         *used_grip(run),
-    )
-
-
-def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
-    """Table of the outcomes of the ensemble with the ranges of the sampled snow."""
-    rows = []
-    for outcome, count in Counter(run.outcome for run in ensemble).most_common():
-        snows = [run.snow for run in ensemble if run.outcome == outcome]
-        hardness = sorted(snow.snow_hardness / N_PER_MM3 for snow in snows)
-        stress = sorted((snow.failure_shear_stress or 0.0) / N_PER_MM2 for snow in snows)
-        rows.append((outcome_words(outcome), count, (hardness[0], hardness[-1]), (stress[0], stress[-1])))
-    return Table(
-        "ensemble",
-        Message("How the runs of the ensemble ended, and the snow that was drawn for them."),
-        (
-            Column("outcome", Message("Outcome"), "text"),
-            Column("runs", Message("Runs"), "count"),
-            Column("H_V_N_per_mm3", "H_V", "range", unit="N/mm³"),
-            Column("S_f_N_per_mm2", "S_f", "range", unit="N/mm²"),
-        ),
-        rows,
     )
 
 

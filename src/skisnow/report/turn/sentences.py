@@ -263,27 +263,13 @@ def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
     ]
 
 
-def meaning(chain: TurnChain) -> list[Markup]:
-    """Effects of the contact and of the unknown inputs on the track, and the measurement that would help most."""
-    reference, *others = chain.runs.values()
-    far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
-    contacts = prose(
-        "The choice of the contact moves the track by up to {far} m, the unknown inputs of the turn move it by "
-        "{aside} m (width of the band with 90 % of the runs at the end).",
-        far=significant(far, 2),
-        aside=_band_fields(chain)["aside"],
-    )
-    grip = prose("The grip holds while the side force stays below the shear capacity: S_f times depth times length.")
-    if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
-        grip += prose(
-            " An edge enters hard snow only a little and has little to hold: here the skis side-slip. A slower "
-            "start, a gentler slope or softer snow brings them back on their edges."
-        )
+def best_measurement(chain: TurnChain) -> list[Markup]:
+    """Sentence with the measurement that would narrow the band most; empty without shares."""
     shares = _shares(chain)
-    if shares is not None:
-        key = shares.keys[int(np.argmax(shares.aside.share))]
-        test = _INPUTS[key][1] if key in _INPUTS else Message("a better value of {key}", key=key)
-        if key in {measured.key for measured in chain.measured}:
-            test = _FURTHER.get(key, test)
-        contacts += prose(" The band would narrow most by {test}.", test=html(test))
-    return [contacts, grip]
+    if shares is None:
+        return []
+    key = shares.keys[int(np.argmax(shares.aside.share))]
+    test = _INPUTS[key][1] if key in _INPUTS else Message("a better value of {key}", key=key)
+    if key in {measured.key for measured in chain.measured}:
+        test = _FURTHER.get(key, test)
+    return [prose("The band would narrow most by {test}.", test=html(test))]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Final, Literal, NamedTuple, TypeAlias, get_args
@@ -49,8 +49,6 @@ class Course(Shown):
         Place of the scenario's x = y = 0 and direction of its x, for gates in degrees.
     axes
         "metres": those of the file or a scenario; "east_north_up": from `latitude_deg` and `longitude_deg`.
-    warnings
-        Sentences on the reader's assumptions.
 
     Raises
     ------
@@ -104,7 +102,6 @@ class Course(Shown):
         Allowed(-360.0, 360.0),
     ] = None
     axes: CourseAxes = "metres"
-    warnings: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
         require_declared(self)

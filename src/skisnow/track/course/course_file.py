@@ -10,7 +10,6 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
@@ -20,8 +19,6 @@ from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
 from .course import Course, Gate, Side, course_names, course_place
 
-SHARPEST: Final = 0.05
-"""Smallest bend (rad) of the line from pole to pole that determines a gate's side."""
 _COLUMNS: Final = ("gate", "x_m", "y_m", "side")
 _OUTER: Final = ("outer_x_m", "outer_y_m")
 _ACTION: Final = Message(
@@ -123,37 +120,16 @@ def _geodetic_course(
     height = 0.0 if np.isnan(first.height) else first.height
     points = np.array([(waypoint.latitude_deg, waypoint.longitude_deg, height) for waypoint in waypoints])
     place = east_north_up(points, origin=GeodeticPoint(latitude, longitude, height))[:, :2]
-    sides = []
-    for waypoint, bend in zip(waypoints, _bends(place), strict=True):
-        side = waypoint.side or bend
-        if side is None:
-            raise ParameterError(
-                "waypoint {row}, {name!r}, states no side, and the gates are so straight there that their line does "
-                "not determine it either. Write left or right into its type"
-            ).tag("no_side", row=waypoint.row, name=waypoint.name)
-        sides.append(side)
-    assumed = [waypoint.name for waypoint in waypoints if waypoint.side is None]
-    gates = tuple(
-        Gate(name=waypoint.name, turning=(float(x), float(y)), side=side)
-        for waypoint, (x, y), side in zip(waypoints, place, sides, strict=True)
-    )
-    warning = f"the side of {len(assumed)} gates was taken from the bends of the course: {', '.join(assumed)}"
+    gates = []
+    for waypoint, (x, y) in zip(waypoints, place, strict=True):
+        if waypoint.side is None:
+            raise ParameterError("waypoint {row}, {name!r}, states no side. Write left or right into its type").tag(
+                "no_side", row=waypoint.row, name=waypoint.name
+            )
+        gates.append(Gate(name=waypoint.name, turning=(float(x), float(y)), side=waypoint.side))
     return Course(
-        gates=gates, axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude,
-        warnings=(warning,) if assumed else (), **options,
+        gates=tuple(gates), axes="east_north_up", latitude_deg=latitude, longitude_deg=longitude, **options,
     )  # fmt: skip
-
-
-def _bends(place: FloatArray) -> list[Side | None]:
-    """Passed side of each gate, from the bends of the line from pole to pole; None if it is too straight."""
-    ways = np.diff(place, axis=0)
-    angle = np.arctan2(ways[:-1, 0] * ways[1:, 1] - ways[:-1, 1] * ways[1:, 0], (ways[:-1] * ways[1:]).sum(axis=1))
-    inner: list[Side | None] = [
-        None if abs(bend) < SHARPEST else "right" if bend > 0.0 else "left" for bend in angle.tolist()
-    ]
-    other: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
-    ends = [other[inner[0]], other[inner[-1]]] if inner else [None, None]
-    return [ends[0], *inner, ends[1]][: len(place)]
 
 
 def on_slope(course: Course, *, slope_angle: float | None) -> Course:

@@ -125,7 +125,7 @@ def _projected(
             action = Message("The file has local metres only; leave the origin out.")
             raise track_error("no_place_on_earth", recording.name, allowed, action, value=str(origin))
         return recording.place, recording.velocity, None
-    at = origin or recording.default_origin
+    at = origin
     if at is None:  # the first point; if its height is missing, with the first recorded height
         points = recording.place[fix]
         heights = [*points[np.isfinite(points[:, 2]), 2].tolist(), 0.0]

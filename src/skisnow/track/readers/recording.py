@@ -11,7 +11,7 @@ from ..._support.arrays import BoolArray, IntArray
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, current_language, template
 from ...parameters import Quantity
-from ..projection import HIGHEST, GeodeticPoint
+from ..projection import HIGHEST
 from ..track import Track
 
 
@@ -25,7 +25,6 @@ class Recording(Track):
     is_geodetic: True if ``place`` is latitude (°), longitude (°) and height (m), otherwise x, y, z in m.
     fix: (n,) bool or None, True if the receiver had a fix; None if unknown.
     heights: description of the reference of the heights.
-    default_origin: origin that the file names.
     columns: names of ``x``, ``y``, ``z`` in the file, for messages.
     segment: (n,) or None, number of the segment of each point, if the file separates segments.
     not_finite: (n,) bool or None, True for points of which the file has a cell such as `nan` or `inf`.
@@ -36,7 +35,6 @@ class Recording(Track):
     is_geodetic: bool
     fix: BoolArray | None = None
     heights: str = "as in the file"
-    default_origin: GeodeticPoint | None = None
     columns: Mapping[str, str] = field(default_factory=dict)
     segment: IntArray | None = None
     not_finite: BoolArray | None = None
