@@ -21,5 +21,4 @@ def upgrade() -> None:
 
 def downgrade() -> None:
     metadata.drop_all(op.get_bind())
-    if op.get_bind().dialect.name == "sqlite":
-        op.execute("PRAGMA application_id = 0")
+    op.execute("PRAGMA application_id = 0")
