@@ -1,6 +1,6 @@
 """Who computes the points of a study: threads against processes, and what handing work out costs.
 
-``python -m benchmarks.executors`` prints ratios of times that were taken in turn; the parts with Dask need the extra.
+``python -m benchmarks.executors`` prints ratios of times that were taken in turn.
 """
 
 from __future__ import annotations
@@ -109,21 +109,9 @@ def main() -> None:
                 f"({faster.min():.2f} to {faster.max():.2f}) |",
                 flush=True,
             )
-    print("\n| executor | time over tasks × 50 ms / 2 |\n| --- | ---: |")
     ideal = asked.tasks * TASK_S / WORKERS
-    try:
-        import distributed
-    except ImportError:
-        print(f"| threads | {asleep_seconds(asked.tasks, 'threads') / ideal:.3f} |")
-        print("| Dask | not installed |")
-        return
-    with (
-        distributed.LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=None) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        asleep_seconds(4, client)
-        for name, executor in (("threads", "threads"), ("Dask, two workers", client)) * 2:  # in turn
-            print(f"| {name} | {asleep_seconds(asked.tasks, executor) / ideal:.3f} |", flush=True)
+    print("\n| executor | time over tasks × 50 ms / 2 |\n| --- | ---: |")
+    print(f"| threads | {asleep_seconds(asked.tasks, 'threads') / ideal:.3f} |")
 
 
 if __name__ == "__main__":

@@ -15,12 +15,12 @@ PAGES = (
         if not {"_build", "_generated"} & set(path.parts)
     ),
 )
-FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "dask ", "cc ", "#!/bin/bash")
+FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "cc ", "#!/bin/bash")
 BLOCK = re.compile(
     r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>[^\n`]*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 MARK = re.compile(r"<!-- (?P<kind>not run|needs): (?P<reason>[\w ]+) -->")
-REASONS = {"server", "scheduler", "package index", "other checks", "data of others"}
+REASONS = {"package index", "other checks", "data of others"}
 PACKAGES = {"fmpy", "mujoco", "exudyn"}
 """Reasons of a mark, and packages without which a block cannot be run."""
 

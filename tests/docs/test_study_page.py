@@ -42,6 +42,6 @@ def test_job_script_is_one_of_bash() -> None:
 
 def test_commands_of_the_page_are_taken() -> None:
     commands = [line for block in blocks("") for line in block.splitlines() if line.startswith("skisnow ")]
-    assert len(commands) == 4
+    assert len(commands) == 2
     for line in commands:
         assert build_parser().parse_args(line.split()[1:]).run

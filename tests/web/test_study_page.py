@@ -1,9 +1,7 @@
 """A study is requested on its page, shown, taken away as files, and gives the table of the command."""
 
 import io
-import json
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -58,42 +56,6 @@ def test_a_study_of_runs_is_cancelled_continues_after_a_restart(page: Page, serv
     (folder / "table.csv").unlink()
     run_study(read_study(folder / "study.toml"), workers=2)
     assert (folder / "table.csv").read_bytes() == found
-
-
-@pytest.fixture
-def with_scheduler(tmp_path: Path) -> Iterator[tuple[Served, list[str]]]:
-    """A lab that sends its studies to a Dask scheduler, and the log of its worker."""
-    pytest.importorskip("distributed", reason="Dask is not installed: skisnow[dask]")
-    from tests.support.processes.test_dask import Cluster
-
-    cluster = Cluster(tmp_path)
-    try:
-        cluster.hire(1)
-        further = ("--scheduler", cluster.address)
-        lab = Served(tmp_path / "lab" / "store.sqlite3", as_command=True, further=further)
-        lab.store.parent.mkdir()
-        try:
-            yield lab.start(), [cluster.address]
-        finally:
-            lab.kill()
-    finally:
-        cluster.close()
-
-
-@pytest.mark.slow
-def test_a_scheduler_computes_the_studies(page: Page, with_scheduler: tuple[Served, list[str]], tmp_path: Path) -> None:
-    served, (address,) = with_scheduler
-    ask(page, served, {f"{FIRST}: number of values": "4"})
-    page.get_by_text(f"The workers of {address} compute.").wait_for()
-    page.get_by_text("4 points: equilibrium 4.").wait_for(timeout=LONG_MS)
-    (job,) = (served.lab / "studies").glob("*/job.json")
-    assert json.loads(job.read_text(encoding="utf-8"))["workers"] == 0
-    found = job.with_name("table.csv").read_bytes()
-    (tmp_path / "study.toml").write_bytes(job.with_name("study.toml").read_bytes())
-    run_study(read_study(tmp_path / "study.toml"), workers=1)
-    assert (tmp_path / "table.csv").read_bytes() == found
-    log = (tmp_path / "dask_scheduler.log").read_text(encoding="utf-8")
-    assert "Client-skisnow" in log
 
 
 def choose(page: Page, label: str, option: str) -> None:

@@ -13,11 +13,9 @@ from .options import (
     add_changes,
     add_fall_line_azimuth,
     add_language,
-    add_scheduler,
     add_workers,
     changes_of,
     scenario_of,
-    scheduler_of,
     seed_number,
     whole_number,
 )
@@ -78,7 +76,6 @@ def _add_methods(parser: argparse.ArgumentParser) -> None:
     clock = "whether photo-cell clocks show 0 at the start, or each run's has a separate offset"
     parser.add_argument("--clock", choices=("start", "free"), help=clock)
     add_workers(parser)
-    add_scheduler(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -131,7 +128,6 @@ def _identify(options: argparse.Namespace) -> Identification:
             clock_is_free=None if options.clock is None else options.clock == "free",
             rng=np.random.default_rng(options.seed),
             workers=options.workers,
-            executor=scheduler_of(options),
             checkpoint=None if options.out is None else options.out / KEPT,
             restart=not options.resume,
             progress=progress,

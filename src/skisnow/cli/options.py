@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 import re
-import sys
 from typing import TYPE_CHECKING, Any, Final
 
-from .._support.errors import ParameterError, suggest
+from .._support.errors import suggest
 from .._support.messages import ENGLISH, languages
 
 if TYPE_CHECKING:
@@ -145,41 +144,3 @@ def _shown(word: str, limit: int = 80) -> str:
 
 seed_number = whole_number(0, 2**63 - 1)
 """Converter of a seed, which can be in every file."""
-LOCAL = ("processes", "threads")
-
-
-def add_scheduler(parser: argparse.ArgumentParser) -> None:
-    """Add the option for the address of a Dask scheduler to a command."""
-    about = "who computes: processes (default) or threads of this computer, or the workers of a Dask scheduler"
-    parser.add_argument("--scheduler", metavar="WORD|URL", help=about)
-
-
-def scheduler_of(options: argparse.Namespace) -> str | None:
-    """Scheduler of the options, checked as by `checked_scheduler`; None without one.
-
-    Raises ParameterError: it is not a scheduler, Dask is not installed, or a number of workers is also stated.
-    """
-    scheduler: str | None = options.scheduler
-    if scheduler is not None and scheduler not in LOCAL and options.workers is not None:
-        raise ParameterError(
-            "--workers is the number of processes of this computer; a scheduler has its own number. Remove one of them"
-        ).tag("contradiction")
-    return checked_scheduler(scheduler)
-
-
-def checked_scheduler(scheduler: str | None) -> str | None:
-    """The same scheduler, word or address, after a check; prints a warning if its connection is not encrypted.
-
-    Raises ParameterError: it is not a scheduler, or Dask is not installed.
-    """
-    if scheduler is None or scheduler in LOCAL:
-        return scheduler
-    from .._support.processes.crews import is_plain, require_scheduler
-
-    require_scheduler(scheduler)
-    if is_plain(scheduler):
-        risk = "what is sent to the workers is not encrypted, and whoever reaches it can run programs on them"
-        print(
-            f"{scheduler}: {risk}: only for trusted networks. Use tls:// with certificates for others.", file=sys.stderr
-        )
-    return scheduler

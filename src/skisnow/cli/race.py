@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from .options import (
     add_changes,
-    add_scheduler,
     add_workers,
     number,
     scenario_of,
-    scheduler_of,
     seed_number,
     whole_number,
 )
@@ -55,7 +53,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     _add_search(parser)
     _add_comparison_options(parser)
     add_workers(parser)
-    add_scheduler(parser)
     parser.add_argument("--json", action="store_true", help="print race.json alone to standard output")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="write race.json, line.csv and figures")
     parser.set_defaults(run=run)
@@ -147,7 +144,7 @@ def _run_race(
         snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
         begin = _read_start_line(options, scenario)
     prepare_output(options.out)
-    computing: dict[str, Any] = {"workers": options.workers, "executor": scheduler_of(options)}
+    computing: dict[str, Any] = {"workers": options.workers}
     with Progress() as progress:
         fastest = quickest_line(
             scenario.with_(method="fast"), gates=options.gates, model=options.model, start=begin,

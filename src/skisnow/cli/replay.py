@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
-from .options import add_fall_line_azimuth, add_language, add_scheduler, checked_scheduler, number, whole_number
+from .options import add_fall_line_azimuth, add_language, number, whole_number
 from .output import announced
 
 if TYPE_CHECKING:
@@ -145,7 +145,6 @@ def add_serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     )
     parser.add_argument("--certificate-key", type=Path, metavar="FILE", help="PEM file of the key, where it is another")
     parser.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own file)")
-    add_scheduler(parser)
     parser.set_defaults(run=serve_lab)
 
 
@@ -166,11 +165,10 @@ def serve_lab(options: argparse.Namespace) -> int:
     if options.certificate is None and options.certificate_key is not None:
         raise ParameterError("--certificate-key goes with --certificate").tag("contradiction")
     certificate = None if options.certificate is None else Certificate(options.certificate, options.certificate_key)
-    scheduler = checked_scheduler(options.scheduler)
     place = options.store.absolute() if options.store is not None else default_path()
     with Store.open(place) as store:
         serve(
-            Lab(store, place.parent / "lab", scheduler=scheduler),
+            Lab(store, place.parent / "lab"),
             host=options.host,
             port=options.port,
             token=options.token,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
-from .options import add_language, add_scheduler, add_workers, scheduler_of
+from .options import add_language, add_workers
 from .output import Progress, ending_is_an_interrupt, prepare_figure, report_interrupt
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     about = "with the varied and fixed inputs and `out`; with --merge the parts"
     parser.add_argument("study", type=Path, nargs="+", metavar="STUDY.toml", help=about)
     add_workers(parser)
-    add_scheduler(parser)
     parts = parser.add_mutually_exclusive_group()
     shard = "compute one of n parts, for the jobs of an array: every n-th point, into a file beside the table"
     parts.add_argument("--shard", metavar="i/n", help=shard)
@@ -61,11 +60,10 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
         raise ParameterError("--figure draws maps of carved turns; remove it for simulated runs and use the table").tag(
             "not_supported"
         )
-    executor = scheduler_of(options)
     _print_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            table = run_study(study, workers=options.workers, executor=executor, progress=_print_points(progress))
+            table = run_study(study, workers=options.workers, progress=_print_points(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, study.partial)
     _print_outcomes(study.out, table)
@@ -82,12 +80,9 @@ def _run_part(options: argparse.Namespace, study: Study) -> int:
     if options.figure is not None:
         raise ParameterError("--figure needs the whole table; draw it when the parts are put together").tag("missing")
     shard = Shard.of(options.shard)
-    executor = scheduler_of(options)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            place = run_shard(
-                study, shard, workers=options.workers, executor=executor, progress=_print_points(progress)
-            )
+            place = run_shard(study, shard, workers=options.workers, progress=_print_points(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, shard.place(study))
     print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
@@ -101,7 +96,7 @@ def _print_points(progress: Progress) -> Callable[[int, int], None]:
 def _merge_shards(options: argparse.Namespace) -> int:
     from ..studies import merge_shards
 
-    if options.figure is not None or options.scheduler is not None:
+    if options.figure is not None:
         options.parser.error("--merge computes nothing: it takes a table and the files that --shard left, and no more")
     table = merge_shards(options.merge, options.study)
     _print_outcomes(options.merge, table)

@@ -35,10 +35,8 @@ class Lab:
     """Store, folder and settings of a lab, the argument of each page's ``add_page``.
 
     runs: folder of runs, studies, skis, tracks and courses.
-    scheduler: scheduler of studies as in ``skisnow study --scheduler`` (default: this machine).
     """
 
     store: Store
     runs: Path
     limits: Limits = field(default_factory=Limits)
-    scheduler: str | None = None

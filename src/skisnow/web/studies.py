@@ -16,7 +16,7 @@ from typing import Final
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import ENGLISH, Message, in_language, joined, outcome_words
-from .._support.processes.batch import LOCAL, available_cores
+from .._support.processes.batch import available_cores
 from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
 from ..studies import Study, StudyTable
@@ -37,24 +37,17 @@ class Studies(Runs):
     """Queue and history of studies: a job's scenario is its subject, the changes its fixed, given its varied inputs.
 
     folder: folder of the lab's runs; studies have a subfolder.
-    scheduler: scheduler as in ``--scheduler`` of the command (default: processes of this machine on all cores but one).
     """
 
     progress_lines = re.compile(r"^\d+ of \d+ points")
 
-    def __init__(self, folder: Path, scheduler: str | None = None) -> None:
+    def __init__(self, folder: Path) -> None:
         super().__init__(folder / FOLDER)
-        self.scheduler = scheduler
-
-    @property
-    def elsewhere(self) -> str:
-        """Address of the scheduler; "" if this machine computes."""
-        return "" if self.scheduler is None or self.scheduler in LOCAL else self.scheduler
 
     @property
     def workers(self) -> int:
-        """Number of processes or threads of this machine for a study."""
-        return 0 if self.elsewhere else max(1, available_cores() - 1)
+        """Number of processes for a study: a core stays free for the pages."""
+        return max(1, available_cores() - 1)
 
     def ask_for(self, question: StudyQuestion, language: str = ENGLISH) -> Job:
         """Store a study at the end of the queue; ``language``: language of its map.
@@ -121,10 +114,8 @@ class Studies(Runs):
 
     def _command(self, job: Job) -> list[str]:
         folder = self.folder / job.name
-        by = [] if self.scheduler is None else ["--scheduler", self.scheduler]
-        here = ["--workers", str(self.workers)] if self.workers else []
         figure = ["--language", job.language, "--figure", str(folder / FIGURE)] if job.scenario == CARVE else []
-        return ["study", str(folder / STUDY), *by, *here, *figure]
+        return ["study", str(folder / STUDY), "--workers", str(self.workers), *figure]
 
     async def _ended_as(self, job: Job, last: str, *, cancelled: bool) -> Job:
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)

@@ -1,11 +1,9 @@
-"""Whoever computes, the rows are the same; a stand-in for the client of Dask."""
+"""Whoever computes, the rows are the same."""
 
-import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,10 +11,10 @@ import pytest
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.processes import crews
 from skisnow._support.processes.batch import Pool, require_executor, run_batch
-from skisnow._support.processes.crews import LOST, DaskCrew, Identity, crew_of_scheduler, is_plain
+from skisnow._support.processes.crews import Identity
 from skisnow._support.processes.kept_rows import KeptRows, json_text
 from skisnow.identification import identify
-from tests.coded import Coded, coded, raises
+from tests.coded import raises
 from tests.identification.straight_tracks import SCENARIO, track
 
 POINTS = [[("n", n), ("third", n / 3.0)] for n in range(40)]
@@ -135,19 +133,7 @@ def test_errors_of_an_executor_and_of_the_function(error: Exception, kind: type[
     assert getattr(caught.value, "code", None) == code
 
 
-@pytest.mark.parametrize(("raised", "code"), [("no_snow", "no_snow"), (LOST, "pool_failed")])
-def test_advice_is_for_what_was_lost_and_not_for_what_the_function_rejects(raised: str, code: str) -> None:
-    class Refusing(Here):
-        def submit(self, *_: Any, **__: Any) -> Future[Any]:
-            future: Future[Any] = Future()
-            future.set_exception(SkisnowError("no snow").tag(raised))
-            return future
-
-    with raises(SkisnowError, code):
-        run_batch(POINTS, dict, executor=Refusing())
-
-
-def test_futures_that_a_lost_scheduler_cancels_are_reported() -> None:
+def test_futures_that_an_executor_cancels_are_reported() -> None:
     class Cancelling(Here):
         def submit(self, *_: Any, **__: Any) -> Future[Any]:
             future: Future[Any] = Future()
@@ -162,167 +148,19 @@ def test_futures_that_a_lost_scheduler_cancels_are_reported() -> None:
 def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     executor = Here()
     monkeypatch.chdir(tmp_path)
-    crew = crews.Crew(executor, crews.on_workers(dict), lambda: 1)
+    crew = crews.Crew(executor, crews.on_workers(dict), 1)
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     crew.submit([(0, POINTS[0])]).result()
     assert Path.cwd() == tmp_path
 
 
-@pytest.mark.parametrize(
-    ("executor", "told"),
-    [(3, coded("unknown_executor", executor=3)), ("host:8786", coded("unknown_executor", scheduler="host:8786"))],
-)
-def test_an_invalid_executor_is_rejected(executor: Any, told: str | Coded) -> None:
-    with raises(ParameterError, told):
+@pytest.mark.parametrize("executor", [3, "host:8786", "tcp://host:8786"])
+def test_an_invalid_executor_is_rejected(executor: Any) -> None:
+    with raises(ParameterError, "unknown_executor", executor=executor):
         run_batch(POINTS, dict, executor=executor)
 
 
-def test_dask_that_is_not_installed_is_reported_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with raises(ParameterError, "package_missing", module="distributed", extra="dask"):
-        require_executor("tcp://127.0.0.1:8786")
-
-
 @pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
-def test_what_is_on_this_computer_needs_no_scheduler(executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    searched: list[object] = []
-    monkeypatch.setattr("skisnow._support.processes.batch.require_scheduler", searched.append)
+def test_what_is_on_this_computer_is_an_executor(executor: Any) -> None:
     require_executor(executor)
-    assert searched == []
-
-
-# What is done with Dask, by a stand-in for its client: counting, waiting for it, its errors
-
-
-class Client:
-    """The client of a scheduler with two workers."""
-
-    def __init__(self) -> None:
-        self.status, self.threads, self.asked = "running", {"a": 3, "b": 4}, 0
-
-    def get_executor(self, *, pure: bool) -> ThreadPoolExecutor:
-        assert not pure
-        return ThreadPoolExecutor(1)
-
-    def nthreads(self, *, callback_timeout: float) -> dict[str, int]:
-        assert callback_timeout > 0.0
-        self.asked += 1
-        if not self.threads:
-            raise OSError("no answer")
-        return self.threads
-
-    def close(self) -> None:
-        self.status = "closed"
-
-
-class Clock:
-    """Seconds since a process began."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.now = 100.0
-        monkeypatch.setattr(crews, "time", SimpleNamespace(monotonic=lambda: self.now))
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    return Clock(monkeypatch)
-
-
-def test_workers_are_counted_once_a_second(clock: Clock) -> None:
-    client = Client()
-    crew = DaskCrew(dict, client)
-    clock.now += 0.1
-    assert (crew.size(), crew.size(), client.asked) == (7, 7, 1)
-    client.threads = {"a": 2}
-    clock.now += 0.9
-    assert (crew.size(), client.asked) == (7, 1)
-    clock.now += 0.2
-    assert (crew.size(), client.asked) == (2, 2)
-    client.threads = {}
-    clock.now += 1.1
-    assert (crew.size(), client.asked) == (2, 3)
-
-
-def test_a_scheduler_may_be_away_for_ten_seconds(clock: Clock) -> None:
-    client = Client()
-    crew = DaskCrew(dict, client)
-    clock.now += 50.0
-    crew.require_alive()
-    client.status = "connecting"
-    clock.now += 9.9
-    crew.require_alive()
-    clock.now += 0.2
-    with raises(SkisnowError, "scheduler_lost"):
-        crew.require_alive()
-    client.status = "running"
-    crew.require_alive()
-    client.status = "closed"
-    with raises(SkisnowError, "scheduler_lost"):
-        crew.require_alive()
-
-
-class LostWorkerError(Exception):
-    """As Dask has one."""
-
-
-LostWorkerError.__module__ = "distributed.scheduler"
-
-
-def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is finished is taken from a scheduler that has gone; what is not ends the work, before it is computed."""
-    client, futures = Client(), list[Future[Any]]()
-    client.status = "closed"
-    points = [{"a": 1}, {"a": 2}]
-    assert run_batch(points, dict, executor=client) == points
-
-    class Waiting:
-        def submit(self, *_: Any) -> Future[Any]:
-            futures.append(Future())
-            return futures[-1]
-
-    monkeypatch.setattr(client, "get_executor", lambda **_: Waiting())
-    monkeypatch.setattr("skisnow._support.processes.batch.LOOKED_AFTER_S", 0.01)
-
-    def give_up() -> None:
-        for each in futures:
-            each.set_exception(TimeoutError())
-
-    stop = threading.Timer(5.0, give_up)  # so that no process waits for ever
-    stop.start()
-    with raises(SkisnowError, "pool_failed"):
-        run_batch(points, dict, executor=client)
-    stop.cancel()
-    assert not any(each.done() and not each.cancelled() for each in futures)
-
-
-def test_errors_of_dask_are_reported() -> None:
-    crew = DaskCrew(dict, Client())
-    for error in (ImportError("x"), RuntimeError("Can't get attribute 'f'"), ValueError("error while deserializing")):
-        told = crew.explain(error)
-        assert told is not None and told.fields == {"error": str(error)}
-    assert "worker died" in str(crew.explain(LostWorkerError("worker died")))
-    assert crew.explain(ValueError("of the function")) is None
-
-
-def test_the_client_is_closed_at_the_end() -> None:
-    client = Client()
-    DaskCrew(dict, client, client.close).end(at_once=False)
-    assert client.status == "closed"
-
-
-def test_who_does_not_answer_is_reported_with_what_to_start() -> None:
-    assert "tcp://h:1 (refused)" in crews._no_answer_message("tcp://h:1", OSError("refused"))
-    assert "uses certificates" in crews._no_answer_message("tls://h:1", OSError("refused"))
-    assert [is_plain(f"{kind}://h:1") for kind in ("tcp", "tls", "wss", "ws")] == [True, False, False, True]
-
-
-def test_a_scheduler_that_dask_does_not_reach_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Distributed:
-        @staticmethod
-        def Client(address: str, *, timeout: float, **_: Any) -> None:
-            raise OSError(f"{address} refused for {timeout:g} s")
-
-    monkeypatch.setattr(crews, "_distributed", lambda: Distributed)
-    with raises(SkisnowError, "no_scheduler", address="tcp://h:1"):
-        crew_of_scheduler("tcp://h:1", dict)

@@ -112,7 +112,7 @@ def test_workers_end_at_once_after_an_error(error: type[BaseException] | None, f
         future.set_result(None)
 
     class Ends:
-        def end(self, *, at_once: bool) -> None:
+        def close(self, at_once: bool) -> None:
             said.append(at_once)
 
     pool._crew, pool._running = cast("Any", Ends()), {future}
@@ -138,7 +138,7 @@ def test_processes_are_let_go_before_or_behind_their_last_point(
     monkeypatch.setattr("skisnow._support.processes.crews.multiprocessing.get_context", lambda _: context)
     executor = SimpleNamespace(shutdown=shut_down)
     monkeypatch.setattr("skisnow._support.processes.crews.ProcessPoolExecutor", lambda *_, **_options: executor)
-    process_crew(dict, 2).end(at_once=at_once)
+    process_crew(dict, 2).close(at_once)
     assert done[:2] == order
 
 

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
 from functools import partial
 from itertools import islice
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import (
-    Crew,
-    DaskCrew,
-    Done,
-    Numbered,
-    PointFunction,
-    compute_rows,
-    crew_of_scheduler,
-    on_workers,
-    process_crew,
-    require_scheduler,
-)
+from .crews import CHUNK_S, Crew, Done, Numbered, PointFunction, compute_rows, on_workers, process_crew
 from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -54,7 +51,7 @@ def run_batch(
         Number of processes; None: the number of cores available to this process; 1: this process.
     executor
         Executor instead of processes of this computer: "threads"; any `concurrent.futures.Executor`, which is not
-        shut down; a Dask client, or the address of a Dask scheduler. The rows do not depend on it.
+        shut down. The rows do not depend on it.
     progress
         Called with the number of finished points and that of all.
 
@@ -119,10 +116,6 @@ def compute_missing(
             tell(done, len(numbers))
 
 
-LOOKED_AFTER_S: Final = 2.0
-"""Interval (s) between checks that the workers are alive while no result arrives."""
-
-
 class Pool:
     """Workers that compute rows of points; to be used in a ``with`` statement, which ends them.
 
@@ -164,7 +157,7 @@ class Pool:
         for future in unfinished:
             future.cancel()
         if self._crew is not None:
-            self._crew.end(at_once=kind is not None or bool(unfinished))
+            self._crew.close(kind is not None or bool(unfinished))
         self._crew = None
 
     def _compute_chunks(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
@@ -175,24 +168,21 @@ class Pool:
         crew, size, self._running = self._crew, 1, set()
         try:
             while left or self._running:
-                most = 2 * crew.size()
+                most = 2 * crew.size
                 fair = max(1, min(size, left // most))  # small at the end: all workers end together
                 while left and len(self._running) < most:
                     chunk = list(islice(points, min(fair, left)))
                     left -= len(chunk)
                     self._running.add(crew.submit(chunk))
-                ended, self._running = wait(self._running, LOOKED_AFTER_S, return_when=FIRST_COMPLETED)
-                if not ended:
-                    crew.require_alive()
+                ended, self._running = wait(self._running, return_when=FIRST_COMPLETED)
                 for future in ended:
                     done = future.result()
-                    size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
+                    size = max(1, min(crew.largest, int(CHUNK_S / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
-        except Exception as error:
-            message = crew.explain(error)
-            if message is None:
-                raise
-            raise SkisnowError("{problem} {advice}").tag("pool_failed", problem=message, advice=self._advice) from error
+        except (BrokenExecutor, CancelledError) as error:
+            raise SkisnowError("A worker ended unexpectedly, perhaps for lack of memory. {advice}").tag(
+                "pool_failed", advice=self._advice
+            ) from error
 
 
 def worker_count(workers: int | None) -> int:
@@ -211,40 +201,33 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-ExecutorLike: TypeAlias = Executor | str | Any
-"""Executor: "processes" or "threads" of this computer; any `concurrent.futures.Executor`; a Dask client; the
-address of a Dask scheduler."""
+ExecutorLike: TypeAlias = Executor | str
+"""Executor: "processes" or "threads" of this computer, or any `concurrent.futures.Executor`."""
 
 LOCAL: Final = ("processes", "threads")
 
 
 def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Crew:
-    """Crew for an executor: processes or threads of this computer, a Dask scheduler, or an executor of the caller.
+    """Crew for an executor: processes or threads of this computer, or an executor of the caller.
 
     workers: number of workers of this computer, or of an executor that does not report its number.
     """
+    require_executor(executor)
     if isinstance(executor, Executor):
-        return Crew(executor, on_workers(function), lambda: _workers_of(executor) or workers)
+        return Crew(executor, on_workers(function), _workers_of(executor) or workers)
     if executor == "processes":
         return process_crew(function, workers)
-    if executor == "threads":
-        threads = ThreadPoolExecutor(workers)  # the compiled core lets other threads run while it computes
-        compute = partial(compute_rows, function)
-        return Crew(threads, compute, lambda: workers, lambda _: threads.shutdown(wait=True, cancel_futures=True))
-    if isinstance(executor, str):
-        return crew_of_scheduler(executor, function)
-    if hasattr(executor, "get_executor"):
-        return DaskCrew(function, executor)
-    raise ParameterError(
-        "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a Dask client, or "
-        "the address of a Dask scheduler"
-    ).tag("unknown_executor", executor=executor, names=list(LOCAL))
+    threads = ThreadPoolExecutor(workers)  # the compiled core lets other threads run while it computes
+    compute = partial(compute_rows, function)
+    return Crew(threads, compute, workers, lambda _: threads.shutdown(wait=True, cancel_futures=True))
 
 
 def require_executor(executor: ExecutorLike | None) -> None:
-    """Raise an error before the work if the executor is a text but no valid word or address of a scheduler."""
-    if isinstance(executor, str) and executor not in LOCAL:
-        require_scheduler(executor)
+    """Raise an error before the work if the executor is neither a valid word nor an `Executor`."""
+    if executor is not None and executor not in LOCAL and not isinstance(executor, Executor):
+        raise ParameterError(
+            "executor is {executor!r}; it must be one of {names}, or a concurrent.futures.Executor"
+        ).tag("unknown_executor", executor=executor, names=list(LOCAL))
 
 
 def _workers_of(executor: Executor) -> int | None:

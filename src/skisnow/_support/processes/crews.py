@@ -1,4 +1,4 @@
-"""Work of a worker (a chunk of points), and its executors: processes or threads here, one of the caller, Dask."""
+"""Work of a worker (a chunk of points), and its executors: processes or threads here, or one of the caller."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager, suppress
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from importlib.metadata import version
@@ -20,13 +20,9 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeAlias
 
 from ...compiled import core
-from ..environment import import_extra
-from ..errors import ParameterError, SkisnowError
-from ..messages import Message
+from ..errors import SkisnowError
 from .kept_rows import NumberedText, Row, json_text
 
-LOST: Final = "scheduler_lost"
-"""Code of the error."""
 LARGEST_FOR_A_PIPE: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 LARGEST: Final = 10_000
@@ -35,57 +31,28 @@ CHUNK_S: Final = 0.25
 """Work (s) that is handed over at once, and that a kill loses (handing over costs 1 ms here)."""
 
 
-LOST_WORKERS: Final = Message("The scheduler was lost, or gave the work up.")
-
-
+@dataclass(frozen=True, slots=True)
 class Crew:
     """Workers of an executor that compute chunks of points; a submitted chunk returns a future with its rows.
 
     executor: it is not shut down here.
     compute: function from the points of a chunk to its rows; see `on_workers`.
-    size: function that returns how many chunks the executor computes at once, which may change while the work runs.
-    close: function that stops the workers of this crew, at once if its argument is True; None: it started none.
+    size: number of chunks that the executor computes at once.
+    close: function that stops the workers that this crew started; at once, in the middle of their work, if its argument
+        is True.
     largest: maximum number of points of a chunk.
     """
 
-    chunk_s: float = CHUNK_S
-    """Work of one chunk (s)."""
-
-    def __init__(
-        self,
-        executor: Executor,
-        compute: Callable[[list[Numbered]], Done],
-        size: Callable[[], int],
-        close: Callable[[bool], None] | None = None,
-        *,
-        largest: int = LARGEST,
-    ) -> None:
-        self._executor, self._compute, self._size, self._close = executor, compute, size, close
-        self.largest = largest
-
-    def size(self) -> int:
-        """Number of chunks that are computed at once."""
-        return max(1, self._size())
+    executor: Executor
+    compute: Callable[[list[Numbered]], Done]
+    size: int
+    close: Callable[[bool], object] = bool
+    largest: int = LARGEST
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Submit a chunk to the workers; a process that starts with it ignores Ctrl-C, which the parent handles."""
         with interrupts_ignored():
-            return self._executor.submit(self._compute, points)
-
-    def explain(self, error: Exception) -> Message | None:
-        """Message that explains a failure of the workers; None for an error that the computed function raised."""
-        if isinstance(error, BrokenExecutor):
-            return Message("A worker process ended unexpectedly, perhaps for lack of memory.")
-        is_lost = isinstance(error, CancelledError) or (isinstance(error, SkisnowError) and error.code == LOST)
-        return LOST_WORKERS if is_lost else None
-
-    def require_alive(self) -> None:
-        """Raise an error if no worker can compute the chunks; called regularly during the wait."""
-
-    def end(self, *, at_once: bool) -> None:
-        """Stop the workers that this crew started; `at_once`: in the middle of their work, if possible."""
-        if self._close is not None:
-            self._close(at_once)
+            return self.executor.submit(self.compute, points)
 
 
 def process_crew(function: PointFunction, workers: int) -> Crew:
@@ -104,7 +71,7 @@ def process_crew(function: PointFunction, workers: int) -> Crew:
         executor.shutdown(wait=True, cancel_futures=True)
         leash.close()
 
-    return Crew(executor, _in_worker, lambda: workers, close, largest=LARGEST_FOR_A_PIPE)
+    return Crew(executor, _in_worker, workers, close, LARGEST_FOR_A_PIPE)
 
 
 def on_workers(function: PointFunction) -> Callable[[list[Numbered]], Done]:
@@ -215,93 +182,3 @@ def _unpacked(packed: bytes, folder: str) -> Any:
     if (require_files := getattr(function, "require_files", None)) is not None:
         require_files()  # an error if a file differs from that of the sender
     return function
-
-
-_NOT_LOADED: Final = ("Can't get attribute", "deserializ")
-"""Texts of Python and Dask where a function is not there."""
-WAIT_S: Final = 30.0
-"""Time-out (s) for the answer of a scheduler."""
-AWAY_S: Final = 10.0
-"""Time (s) that a scheduler may be unreachable during the work."""
-COUNTED_EVERY_S: Final = 1.0
-"""Interval (s) between counts of the workers, which come and go."""
-
-
-def require_scheduler(address: str) -> None:
-    """Raise an error for an address without ``://``, or if Dask is not installed; no connection is made."""
-    if "://" not in address:
-        raise ParameterError(
-            "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, threads or processes."
-        ).tag("unknown_executor", scheduler=address)
-    _distributed()
-
-
-def is_plain(address: str) -> bool:
-    """True if the connection to a scheduler at this address is not encrypted, so that its network must be trusted."""
-    return not address.startswith(("tls://", "wss://"))
-
-
-def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
-    """Connect to a Dask scheduler and return its workers as a crew; certificates are those of Dask's configuration."""
-    require_scheduler(address)
-    try:
-        client = _distributed().Client(address, timeout=WAIT_S, name="skisnow")
-    except (OSError, ValueError, TypeError) as error:
-        raise SkisnowError(_no_answer_message(address, error)).tag("no_scheduler") from error
-    return DaskCrew(function, client, client.close)
-
-
-def _no_answer_message(address: str, error: Exception) -> Message:
-    if not is_plain(address):
-        return Message(
-            "No connection to the scheduler at {address} ({error}). It uses certificates. Check that it runs, and that "
-            "Dask's configuration (distributed.comm.tls) names the same authority, and a certificate with its key.",
-            address=address,
-            error=error,
-        )
-    return Message(
-        "No scheduler answers at {address} ({error}). Start one with `dask scheduler`, and workers with "
-        "`dask worker`; both print their address.",
-        address=address,
-        error=error,
-    )
-
-
-class DaskCrew(Crew):
-    """Workers of a Dask client. The scheduler repeats the chunk of a lost worker on another one."""
-
-    chunk_s = 1.0  # from one piece to the next a worker takes some 10 ms, 50 where its cores are wanted by others
-
-    def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None = None) -> None:
-        executor = client.get_executor(pure=False)
-        super().__init__(executor, on_workers(function), self._threads, close and (lambda _: close()))
-        self._client = client
-        self._counted, self._at, self._last_seen = 1, -COUNTED_EVERY_S, time.monotonic()
-
-    def _threads(self) -> int:
-        if time.monotonic() - self._at > COUNTED_EVERY_S:
-            with suppress(Exception):  # it does not answer: `require_alive` says so after a while
-                self._counted = sum(self._client.nthreads(callback_timeout=COUNTED_EVERY_S).values())
-            self._at = time.monotonic()
-        return self._counted
-
-    def require_alive(self) -> None:
-        """Raise an error if the scheduler was unreachable for more than `AWAY_S` seconds or closed the connection."""
-        if self._client.status == "running":
-            self._last_seen = time.monotonic()
-        elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
-            raise SkisnowError(LOST_WORKERS).tag(LOST)
-
-    def explain(self, error: Exception) -> Message | None:
-        """Message that explains an error of Dask; for other errors as in `Crew`."""
-        if isinstance(error, ImportError) or any(word in str(error) for word in _NOT_LOADED):
-            return Message(
-                "A worker cannot load the computation ({error}). Install the same skisnow there.", error=error
-            )
-        if type(error).__module__.startswith("distributed"):
-            return Message("Dask gave up: {kind}: {error}.", kind=type(error).__name__, error=error)
-        return super().explain(error)
-
-
-def _distributed() -> Any:
-    return import_extra("distributed", extra="dask", what=Message("A scheduler"))

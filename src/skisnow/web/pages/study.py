@@ -21,7 +21,6 @@ from ..elements import (
     named,
     option_texts,
     page_frame,
-    sentence,
 )
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..page_requests import redrawn_by
@@ -52,7 +51,7 @@ UNLOADING: Final = "unloading_ratio"
 
 def add_page(lab: Lab) -> None:
     """Add the page to the application and start the queue."""
-    studies = Studies(lab.runs, lab.scheduler)
+    studies = Studies(lab.runs)
     app.on_startup(lambda: background_tasks.create(studies.work(), name="studies"))
     app.on_shutdown(studies.end)
 
@@ -101,8 +100,6 @@ class _Form:
             button(Message("Start the study"), self.ask, "main", once=True)
             self._points = Words("").classes("quiet").props("role=status")
         self._status = Outcome()
-        if studies.elsewhere:
-            sentence(Message("The workers of {elsewhere} compute.", elsewhere=studies.elsewhere), "quiet")
         self._draw_fields()
 
     @property

@@ -60,7 +60,7 @@ def _file_address(name: str, file: str) -> str:
 
 def add_page(lab: Lab) -> None:
     """Add the page and the addresses of its files."""
-    studies = Studies(lab.runs, lab.scheduler)
+    studies = Studies(lab.runs)
 
     @ui.page(f"{HERE}/{{name}}")
     async def study_table(name: str) -> None:

@@ -214,25 +214,18 @@ def test_end_of_a_run_by_its_summary(tmp_path: Path, summary: Any, cancelled: bo
     assert ("46.0 m" in found.said) is (summary is not None)
 
 
-@pytest.mark.parametrize(
-    ("scheduler", "cores", "workers", "elsewhere"),
-    [
-        (None, 1, 1, ""), (None, 2, 1, ""), (None, 4, 3, ""), ("processes", 4, 3, ""), ("threads", 4, 3, ""),
-        ("tcp://a:1", 4, 0, "tcp://a:1"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("cores", "workers"), [(1, 1), (2, 1), (4, 3)])
 def test_a_core_stays_free_for_the_pages(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scheduler: str | None, cores: int, workers: int, elsewhere: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cores: int, workers: int
 ) -> None:
     monkeypatch.setattr(studies_module, "available_cores", lambda: cores)
-    studies = Studies(tmp_path, scheduler)
-    assert (studies.workers, studies.elsewhere, studies.folder) == (workers, elsewhere, tmp_path / "studies")
-    folder, by = tmp_path / "studies" / "n", [] if scheduler is None else ["--scheduler", scheduler]
-    here = ["--workers", str(workers)] if workers else []
+    studies = Studies(tmp_path)
+    assert (studies.workers, studies.folder) == (workers, tmp_path / "studies")
+    folder, here = tmp_path / "studies" / "n", ["--workers", str(workers)]
     job = Job("n", CARVE, {}, "2026", language="de")
     shown = ["--language", "de", "--figure", str(folder / "map.svg")]
-    assert studies._command(job) == ["study", str(folder / "study.toml"), *by, *here, *shown]
-    assert studies._command(replace(job, scenario="a")) == ["study", str(folder / "study.toml"), *by, *here]
+    assert studies._command(job) == ["study", str(folder / "study.toml"), *here, *shown]
+    assert studies._command(replace(job, scenario="a")) == ["study", str(folder / "study.toml"), *here]
 
 
 def test_a_study_is_on_the_disk_when_it_is_in_the_queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
