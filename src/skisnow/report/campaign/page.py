@@ -100,8 +100,7 @@ def write_report(
     require_language(language)
     report = progress or silent
     out = Path(out)
-    for message in prepare_folder(out):
-        report(message)
+    prepare_folder(out)
     with paused_collector(), staged(out, last=RESULTS) as stage:
         stage.stale += _write(ReportData(analysis), stage.path, language, report)
     return out / "report.html"

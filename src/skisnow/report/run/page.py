@@ -226,8 +226,7 @@ def write_run(
     """
     require_language(language)
     folder = Path(folder)
-    for sentence in prepare_folder(folder):
-        progress(sentence)
+    prepare_folder(folder)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
         stage.stale += [*_STALE, *(path.name for path in folder.glob(_MOMENTS))]
