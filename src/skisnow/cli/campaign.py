@@ -166,7 +166,7 @@ def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def import_file(options: argparse.Namespace) -> int:
-    """Import the file, and print what was written."""
+    """Import a file as a campaign, and print the written files."""
     from ..campaign.importing.folder import write_import
 
     asks = not options.yes and sys.stdin.isatty()

@@ -104,7 +104,7 @@ class KeptRows:
             require_sound_pages(self._database)
 
     def about(self) -> dict[str, str]:
-        """Entries of the batch from its start."""
+        """Entries that describe the batch, such as its fingerprint, by name."""
         return dict(self._run_query("select name, value from about"))
 
     def add(self, rows: Iterable[NumberedText]) -> int:
@@ -140,7 +140,7 @@ class KeptRows:
         return ((number, own_json(text)) for number, text in self.texts())
 
     def texts(self) -> Iterator[NumberedText]:
-        """Points with their rows as they are kept, in rising order."""
+        """Numbers of the finished points with their rows as JSON text, in rising order."""
         return ((number, text) for number, text in self._run_query("select number, row from rows order by number"))
 
     def _run_query(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:

@@ -119,7 +119,7 @@ Place: TypeAlias = tuple[str | int, ...]
 
 
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
-    """Reject overlong or invalid texts, and too large or non-finite numbers.
+    """Raise a ContentError for overlong or invalid texts, and too large or non-finite numbers.
 
     infinite: True if a number may be infinite or NaN, as TOML allows.
     place: keys and indices that lead to the value, for messages.

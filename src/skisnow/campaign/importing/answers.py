@@ -84,7 +84,7 @@ def _split(kind: str, text: str) -> tuple[str, str]:
 
 
 def read_template(folder: str | Path) -> Answers:
-    """Answers of an earlier import, from the folder of its campaign.
+    """Read the answers of an earlier import from the folder of its campaign.
 
     Raises ParameterError: no such campaign; its campaign.toml has no ``[import]``, or an answer is not a text.
     """

@@ -45,7 +45,7 @@ def description(
 
 
 def campaign_files(tables: Mapping[str, str], described: str, name: str, data: bytes) -> dict[str, bytes]:
-    """Contents of the folder by path."""
+    """Files of the new campaign by path: tables, campaign.toml (`described`), and the imported file."""
     texts = {CAMPAIGN_FILE: described, **tables}
     return {path: text.encode() for path, text in texts.items()} | {f"{ORIGINAL}/{PurePath(name).name}": data}
 
