@@ -8,9 +8,6 @@ import numpy as np
 from skisnow._support.arrays import FloatArray
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
-from skisnow.ski.editing import SkiEdit, changed_keys, edit_stations, edited_ski, shape_value
-from skisnow.ski.file_keys import COLUMNS
-from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow.properties import SnowProperties
 from tests.present import present
 
@@ -92,16 +89,3 @@ def weights(ski: Ski, clamp_length: float, elements: int = 160) -> FloatArray:
     from skisnow.ski.beam import clamped
 
     return clamped(ski, clamp_length, elements).stations.weight
-
-
-def varied_ski(ski: Ski, name: str, change: float) -> Ski:
-    """The ski with one parameter of `shape_parameters` changed, on stations that move with it."""
-    value, stations = shape_value(ski, name) + change, edit_stations(ski)
-    if name.startswith("ski."):
-        return ski_of_keys(changed_keys(ski.keys or {}, {name.removeprefix("ski."): value}), like=ski)
-    column, _, row = name.removeprefix("edit.").partition("[")
-    if not row:
-        return edited_ski(ski, SkiEdit(stations, {column: value}), name=ski.name, source=ski.source)
-    values = np.full(len(stations), np.nan)
-    values[int(row[:-1]) - 1] = value * COLUMNS[column].factor
-    return edited_ski(ski, SkiEdit(stations, values={column: values}), name=ski.name, source=ski.source)

@@ -14,18 +14,18 @@ from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve, differentiable_carve
 from skisnow.carving.outputs import CarveRequest, output_growth
 from skisnow.carving.result import Equilibrium
-from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives
+from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives
 from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import GAUSS_POINTS, GAUSS_WEIGHTS, HALF_BANDWIDTH, ClampedSki, clamped
-from skisnow.ski.editing import VALUES, shape_parameters, table_growth
+from skisnow.ski.editing import VALUES, shape_parameters, table_growth, varied_ski
 from skisnow.ski.layout import SkiSections
 from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
 from tests.coded import raises
 from tests.present import present
 
-from .synthetic import rigid_ski, snow, varied_ski
+from .synthetic import rigid_ski, snow
 
 OUTPUTS = (
     "turn_radius_boot_m", "turn_radius_chord_m", "turn_radius_median_m", "edge_depth_mm", "grip_utilisation",
@@ -240,6 +240,24 @@ def test_strength_and_mass_play_no_part_in_the_radius() -> None:
     assert grip.relative == pytest.approx(-1.0, rel=1e-12)
 
 
+def test_at_a_kink_both_sides_have_their_derivative() -> None:
+    """Followed to where another station becomes the source of the groove; each side against its own differences."""
+    output, case = "force_per_length_N_per_m", {"edge_angle": math.radians(45.0), "unloading_ratio": 10.0}
+    load, kink = 800.0, math.inf
+    while kink > AT_KINK:
+        exact = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), load=load, **case))  # type: ignore[arg-type]
+        (found,) = exact.sensitivity(output, ["load_N"])
+        assert (found.one_sided is None) == (found.kink > AT_KINK)
+        kink, load = found.kink, load * (1.0 + found.kink)
+    place, near, h = OUTPUTS.index(output), exact.at.solution, 4e-3
+    for side, value in zip((-1.0, 1.0), present(found.one_sided), strict=True):
+        one, two, three = (moved(exact.request, near, "load_N", side * n * h)[place] for n in (1.0, 2.0, 3.0))
+        assert value == pytest.approx(side * (8.0 * two - 5.0 * one - 3.0 * three) / (2.0 * h), rel=1e-6)
+    assert np.ptp(np.array(present(found.one_sided), float)) > 0.01
+    elastic = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), load=800.0, edge_angle=0.5, unloading_ratio=1.0))
+    assert elastic._beside("unloading_ratio", -1e-6, output) is None  # no snow is softer when it unloads
+
+
 FORMS: list[dict[str, Any]] = [{"moment_balance": "free", "moment": 20.0}, {"side_force_spread": "base-reaction"}]
 
 
@@ -307,19 +325,11 @@ def test_fields_sum_to_the_derivative_by_a_factor_and_forces_grow_as_the_largest
 
 def test_forces_at_places_grow_as_their_differences() -> None:
     """Also where the stations move with the ski: the places do not."""
-    carver, places = read_ski("carver"), np.linspace(-0.6, 0.6, 13)
-
-    def carved(ski: Ski, degrees: float) -> CarveDerivatives:
-        angle = math.radians(degrees)
-        return derivatives(carve(ski, snow(0.21, 0.52), edge_angle=angle, load=800.0, unloading_ratio=10.0))
-
-    exact = carved(carver, 45.0)
+    found = carve(read_ski("carver"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    exact, places = derivatives(found), np.linspace(-0.6, 0.6, 13)
     for name, step in (("ski.waist_width_mm", 1e-3), ("edge_angle_deg", 1e-4), ("ski.running_length_mm", 1e-2)):
-        turns = name == "edge_angle_deg"
-        above, below = (
-            carved(carver if turns else varied_ski(carver, name, change), 45.0 + turns * change).force_at(places)
-            for change in (step, -step)
-        )
+        sides = [exact._moved(name, side * step) for side in (1.0, -1.0)]
+        above, below = (side.force_at(places) for side in sides if side is not None)
         growth = exact.force_growth_at(name, places)
         assert (above - below) / (2.0 * step) == pytest.approx(growth, abs=2e-3 * np.abs(growth).max())
 

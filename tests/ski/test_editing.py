@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.carving.synthetic import varied_ski
 from tests.coded import raises
 
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning
@@ -24,6 +23,7 @@ from skisnow.ski.editing import (
     shape_value,
     table_growth,
     values_at,
+    varied_ski,
 )
 from skisnow.ski.ski_file import ski_of_keys
 

@@ -140,6 +140,7 @@ def sensitivities_dict(equilibrium: Equilibrium, parameters: Sequence[str] = ())
             "derivative": derivative.derivative,
             "percent_per_percent": derivative.relative,
             "relative_distance_to_kink": json_number(derivative.kink),
+            "one_sided": None if derivative.one_sided is None else list(derivative.one_sided),
         }
         for output in OUTPUTS
         if exact.output(output) is not None

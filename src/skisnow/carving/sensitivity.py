@@ -16,10 +16,11 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import suggest_and_list
-from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths
+from ..ski.beam import clamped
+from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
 from .outputs import OUTPUTS, CarveRequest, OutputGrowth, output_growth
 from .shape import Shape, ShapeGradient, beam_gradients, bent_by, growth_by_tables, shape_growth, widest_station
-from .solve import Solution, refined
+from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
     from ..compiled import core
@@ -31,8 +32,17 @@ CONDITIONS: Final = (
     "edge_angle_deg", "load_N", "moment_Nm", "unloading_ratio", "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2",
 )  # fmt: skip
 """Parameters besides those of the ski. Load and edge angle change the side force, load × tan ϑ, with them."""
+AT_KINK: Final = 1e-6
+"""Relative distance to a kink below which a derivative has two values."""
+_BESIDE: Final = 1e-9  # relative change of the parameter, behind twice the distance, at which they are taken
+_IN_CONDITIONS: Final = (
+    "edge_angle", "hardness", "excess", "load", "moment", "side_force", "bevel", "bevel_width", "pitch_of_force",
+    "pitch_of_shear", "side", "radius",
+)  # fmt: skip
+"""Numbers of the core that are conditions, in its order but for the two that follow the pitch."""
 _ANGLE, _HARDNESS, _EXCESS, _LOAD, _MOMENT, _SIDE_FORCE, _BEVEL, _BEVEL_WIDTH, _PITCH, _PITCH_OF_SHEAR = range(10)
 _RUNNING, _WIDEST, _SIDE, _RADIUS, _COUNT = range(10, 15)
+_OF_CONDITIONS: Final = [*range(_RUNNING), _SIDE, _RADIUS]
 _OF_SHAPE: Final = [_RUNNING, _BEVEL, _BEVEL_WIDTH, _SIDE, _RADIUS]  # of the ski: those of `TableGrowth`
 
 
@@ -46,6 +56,8 @@ class Sensitivity:
     relative: Change of the output in % per % of the parameter; None where either is 0.
     kink: Relative change of the parameter at which a station touches or leaves the snow or the groove, to first order:
         beyond it the derivative is another.
+    one_sided: Where the kink is nearer than `AT_KINK`: the derivatives just below and just above the parameter; None on
+        a side without an equilibrium.
     """
 
     output: str
@@ -55,6 +67,7 @@ class Sensitivity:
     derivative: float
     relative: float | None
     kink: float
+    one_sided: tuple[float | None, float | None] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +115,7 @@ class CarveDerivatives:
     point: core.CarvePoint = field(init=False)
     at: CarveRequest = field(init=False)
     _directions: dict[str, _ParameterDerivatives] = field(default_factory=dict)
+    _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
     _outputs: dict[str, OutputGrowth | None] = field(default_factory=dict)
     _gradients: dict[str, _Gradient] = field(default_factory=dict)
 
@@ -154,8 +168,36 @@ class CarveDerivatives:
         for (name, value), growth in zip(values.items(), growths, strict=True):
             relative = growth * value / of_output if value and of_output else None
             kink = self._kink_distance(name) / (abs(value) or 1.0) if kinks else math.inf
-            out.append(Sensitivity(output, name, of_output, value, growth, relative, kink))
+            step = (2.0 * kink + _BESIDE) * (abs(value) or 1.0)
+            sides = (self._beside(name, -step, output), self._beside(name, step, output)) if kink < AT_KINK else None
+            out.append(Sensitivity(output, name, of_output, value, growth, relative, kink, sides))
         return tuple(out)
+
+    def _beside(self, name: str, change: float, output: str) -> float | None:
+        """Derivative of an output after a relative change of the parameter; None without equilibrium or output."""
+        if (name, change) not in self._neighbours:
+            self._neighbours[name, change] = self._moved(name, change)
+        neighbour = self._neighbours[name, change]
+        if neighbour is None or neighbour.output(output) is None:
+            return None
+        return neighbour.derivative(output, name)
+
+    def _moved(self, name: str, change: float) -> CarveDerivatives | None:
+        """The derivatives at a neighbouring equilibrium, with the parameter changed; None if it is not found."""
+        request, direction = self.request, self._parameter_derivatives(name)
+        given, model = request.conditions, request.model
+        numbers = zip(_IN_CONDITIONS, direction.numbers[_OF_CONDITIONS], strict=True)
+        given = given._replace(**{key: getattr(given, key) + change * float(growth) for key, growth in numbers})
+        if given.excess < 0.0 or given.edge_angle < 0.0:
+            return None
+        if name not in CONDITIONS:
+            model = clamped(varied_ski(model.ski, name, change), model.clamp_length, request.elements)
+        near = self.at.solution if model.size == request.model.size else None
+        solution = solved(model, given, near=near)
+        strength = None if request.strength is None else request.strength + change * direction.strength
+        if not solution.converged:
+            return None
+        return CarveDerivatives(CarveRequest(model, given, strength, solution, request.elements))
 
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -15,9 +15,10 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.units import MM
 from ..parameters import suggest_and_list
 from .assembling import ArcOutline, moved_stations, stiffness_table
-from .file_keys import BASE, COLUMNS, LISTS, RIGID, SKI_KEYS, STIFFNESSES, SkiFile
+from .file_keys import BASE, COLUMNS, LISTS, RIGID, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
 from .layout import Layout, layout_of_lengths
 from .ski import Ski
 from .ski_file import MADE_OF_KEYS, ski_of_keys
@@ -236,46 +237,41 @@ class TableGrowth:
     numbers: FloatArray
 
 
+_PARTS: Final = ("width", "base_height", *STIFFNESSES)
+_LENGTHS: Final = ("length_mm", "running_length_mm", "sidecut_length_mm", "tail_overhang_mm", "boot_position_mm")
 _OF_NUMBERS: Final = ("running_length_mm", "base_bevel_deg", "edge_width_mm", "side_edge_deg", "edge_radius_mm")
 """Keys of `_NUMBERS`."""
-_STEP_MM: Final = 1e-3
-"""Step of keys in mm; of other keys a millionth of the value."""
+_LENGTH_STEP: Final = 1e-3  # mm; of other keys a ten thousandth
 
 
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
-    """Derivatives of a ski by a parameter of `shape_parameters`; by keys of its file as central differences."""
+    """Derivatives of a ski by a parameter of `shape_parameters`, of lengths and heights by central differences."""
     if name in (*FACTORS, *VALUES):
         return _of_edit(ski, name.removeprefix("edit."))
-    value, key, keys = shape_value(ski, name), name.removeprefix("ski."), parsed_keys(ski)
-    quantity, numbers = SKI_KEYS[key.partition("[")[0]], np.zeros(len(_NUMBERS))
-    step = _STEP_MM if quantity.name.endswith("_mm") else 1e-6 * abs(value)
-    sides = (_with_changed_key(keys, key, side * step * quantity.factor) for side in (1.0, -1.0))
-    if key in _OF_NUMBERS:
-        numbers[_OF_NUMBERS.index(key)] = quantity.factor
-        if key != "running_length_mm":
-            return TableGrowth(np.zeros((len(_TABLES), len(ski.station))), numbers)
-    above, below = (_tables_of_keys(side, ski.station, ski.layout) for side in sides)
-    return TableGrowth((above - below) / (2.0 * step), numbers)
-
-
-def _tables_of_keys(keys: SkiFile, station: FloatArray, home: Layout) -> FloatArray:
-    """Station, width, base height, EI and GJ (5, n) of a ski at stations (m) that move with it from a home layout."""
-    layout = layout_of_lengths(
-        length=keys.length or 0.0,
-        running_length=keys.running_length or 0.0,
-        sidecut_length=keys.sidecut_length or 0.0,
-        tail_overhang=keys.tail_overhang,
-        boot_position=keys.boot_position,
-    )
-    tip, waist, tail = (width or 0.0 for width in (keys.tip_width, keys.waist_width, keys.tail_width))
-    outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=keys.tip_end_width)
-    at = moved_stations(station, home, layout)
-    stiffnesses = (
-        stiffness_table(RIGID if listed is None else listed, keys.stiffness_station, layout).at(at)
-        for listed in (keys.bending_stiffness, keys.torsional_stiffness)
-    )
-    return np.array([at, outline.width_at(at), keys.base.height_at(at, layout), *stiffnesses])
+    memos, table = _growth_caches(ski), _table_of(name)
+    memo = memos.get(table, {})
+    if name in memo:
+        return memo[name]
+    value, key, parsed = shape_value(ski, name), name.removeprefix("ski."), parsed_keys(ski)
+    step = _LENGTH_STEP if key.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP
+    if table in STIFFNESSES:
+        rows = _stiffness_table(parsed, table, _layout_of(parsed)).growths(ski.station)
+        memo |= {
+            f"ski.{table}[{row}]": _growth_of_table(EDITED_COLUMNS[table], of) for row, of in enumerate(rows, start=1)
+        }
+    elif table == "base_height":
+        memo[name] = _growth_of_table(table, _part_growth(parsed, key, step, table, ski.station)[1])
+    elif table == "width" and parsed.tip_end_width is None:
+        units = MM * _unit_widths(parsed, _layout_of(parsed), ski.station)
+        memo |= {f"ski.{width}": _growth_of_table(table, unit) for width, unit in zip(WIDTHS, units, strict=True)}
+    elif table == "width":
+        sides = (_with_changed_key(parsed, key, side * step * MM) for side in (1.0, -1.0))
+        ends = [_outline_of(side, _layout_of(side)).width_at(ski.station) for side in sides]
+        return _growth_of_table(table, (ends[0] - ends[1]) / (2.0 * step))
+    else:
+        return _of_several(ski, name, step)
+    return memo[name]
 
 
 @functools.lru_cache(maxsize=64)
@@ -301,11 +297,93 @@ def _of_edit(ski: Ski, name: str) -> TableGrowth:
     )
 
 
+def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
+    """Derivatives of a ski by a key that changes several tables, or numbers; `step` of the differences."""
+    parsed, memos, key = parsed_keys(ski), _growth_caches(ski), name.removeprefix("ski.")
+    tables, numbers = np.zeros((len(_TABLES), len(ski.station))), np.zeros(len(_NUMBERS))
+    if key in _OF_NUMBERS:
+        numbers[_OF_NUMBERS.index(key)] = SKI_KEYS[key].factor
+    parts = _PARTS if key in _LENGTHS else STIFFNESSES if _ROW.fullmatch(key) else ()
+    for part in parts:
+        memo = memos[part]
+        if name not in memo:
+            memo[name] = _part_growth(parsed, key, step, part, ski.station)
+        grown = memo[name]
+        tables[0] = grown[0]
+        widths = parsed.tip_width, parsed.waist_width, parsed.tail_width
+        tables[1 + _PARTS.index(part)] = np.array(widths, float) @ grown[1:] if part == "width" else grown[1]
+    return TableGrowth(tables, numbers)
+
+
+@functools.lru_cache(maxsize=256)
+def _table_of(name: str) -> str:
+    """Name of the only table that a parameter changes; empty if it changes several tables, or numbers."""
+    key, _, row = name.removeprefix("ski.").partition("[")
+    if row:
+        return key if key in STIFFNESSES else ""
+    return "base_height" if key in BASE else "width" if key in (*WIDTHS, TIP_END) else ""
+
+
+@functools.lru_cache(maxsize=64)
+def _growth_caches(ski: Ski) -> dict[str, dict[str, Any]]:
+    """Caches of derivatives by table, shared by all skis with the same keys and stations of that table."""
+    if ski.keys is None:
+        return {}
+    keys = parsed_keys(ski)
+    place = (ski.station.tobytes(), *(getattr(keys, SKI_KEYS[key].field) for key in _LENGTHS))
+    return {
+        "width": _growth_cache(*place, _tip_end_ratio(keys)),
+        "base_height": _growth_cache(*place, keys.base),
+        "EI_N_m2": _growth_cache(*place, keys.stiffness_station, keys.bending_stiffness, "EI"),
+        "GJ_N_m2": _growth_cache(*place, keys.stiffness_station, keys.torsional_stiffness, "GJ"),
+    }
+
+
+@functools.lru_cache(maxsize=64)
+def _growth_cache(*_keys: Hashable) -> dict[str, Any]:
+    """An empty cache, the same one for equal keys."""
+    return {}
+
+
+def _tip_end_ratio(keys: SkiFile) -> float | None:
+    """Width at the front end of the ski over the width of the tip."""
+    return None if keys.tip_end_width is None else keys.tip_end_width / (keys.tip_width or 1.0)
+
+
 def _growth_of_table(table: str, growth: FloatArray) -> TableGrowth:
     """Derivatives of a ski of which a parameter changes only one table."""
     tables = np.zeros((len(_TABLES), len(growth)))
     tables[_TABLES.index(table)] = growth
     return TableGrowth(tables, np.zeros(len(_NUMBERS)))
+
+
+def _layout_of(keys: SkiFile) -> Layout:
+    return layout_of_lengths(
+        length=keys.length or 0.0,
+        running_length=keys.running_length or 0.0,
+        sidecut_length=keys.sidecut_length or 0.0,
+        tail_overhang=keys.tail_overhang,
+        boot_position=keys.boot_position,
+    )
+
+
+def _outline_of(keys: SkiFile, layout: Layout) -> ArcOutline:
+    tip, waist, tail = (width or 0.0 for width in (keys.tip_width, keys.waist_width, keys.tail_width))
+    return ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=keys.tip_end_width)
+
+
+def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArray:
+    """Factors (3, n) of the widths of tip, waist and tail, whose sum is the width at stations (m)."""
+    pairs = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    relative = replace(keys, tip_width=1.0, tip_end_width=_tip_end_ratio(keys))
+    skis = [replace(relative, waist_width=waist, tail_width=tail) for waist, tail in pairs]
+    tip, *others = (_outline_of(ski, layout).width_at(station) for ski in skis)
+    return np.array([tip, *(other - tip for other in others)])
+
+
+def _stiffness_table(keys: SkiFile, part: str, layout: Layout) -> StationTable:
+    listed = getattr(keys, SKI_KEYS[part].field)
+    return stiffness_table(RIGID if listed is None else listed, keys.stiffness_station, layout)
 
 
 def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
@@ -320,6 +398,38 @@ def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
     return (
         replace(keys, base=replace(keys.base, **{name: changed})) if key in BASE else replace(keys, **{name: changed})
     )
+
+
+def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: FloatArray) -> FloatArray:
+    """Derivatives of stations and table `part` (or the three unit widths) by a key, by central differences."""
+    home, ends = _layout_of(keys), []
+    for change in (step, -step):
+        side = _with_changed_key(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)
+        layout = _layout_of(side)
+        at = moved_stations(station, home, layout)
+        if part == "width":
+            ends.append(np.vstack([at, _unit_widths(side, layout, at)]))
+        elif part == "base_height":
+            ends.append(np.vstack([at, side.base.height_at(at, layout)]))
+        else:
+            ends.append(np.vstack([at, _stiffness_table(side, part, layout).at(at)]))
+    return np.asarray((ends[0] - ends[1]) / (2.0 * step))
+
+
+def varied_ski(ski: Ski, name: str, change: float) -> Ski:
+    """The ski with a parameter of `shape_parameters` changed, on stations that move with it; the others are held."""
+    value = shape_value(ski, name) + change
+    if name in FACTORS:
+        column = name.removeprefix("edit.")
+        edit = SkiEdit(edit_stations(ski), {column: value})
+        return edited_ski(ski, edit, name=ski.name, source=ski.source)
+    if name in VALUES:
+        (column, row), stations = _column_and_row(name), edit_stations(ski)
+        values = np.full(len(stations), np.nan)
+        values[row] = value * COLUMNS[column].factor
+        return edited_ski(ski, SkiEdit(stations, values={column: values}), name=ski.name, source=ski.source)
+    parsed_keys(ski)
+    return ski_of_keys(changed_keys(ski.keys or {}, {name.removeprefix("ski."): value}), like=ski)
 
 
 @functools.lru_cache(maxsize=64)

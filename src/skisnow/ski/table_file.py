@@ -154,6 +154,14 @@ class StationTable:
         places = np.asarray(station, float)
         return _tabulated(self.station.tobytes(), self.value.tobytes(), places.tobytes()).reshape(places.shape).copy()
 
+    def growths(self, station: FloatArray) -> FloatArray:
+        """Derivatives of the values at stations (m) by the value of each row, shape (rows, n)."""
+        if self.station.size == 1:
+            return np.ones((1, *np.shape(station)))
+        x, y = self.station[::-1], self.value[::-1]
+        by_value, by_slope = _hermite(x.tobytes(), station.tobytes())
+        return np.asarray(by_value + _slope_growths(x, y) @ by_slope)[::-1]
+
 
 @functools.lru_cache(maxsize=32)
 def _tabulated(rows: bytes, values: bytes, station: bytes) -> FloatArray:
@@ -172,6 +180,14 @@ def _cubic(x: FloatArray, y: FloatArray, slope: FloatArray, station: FloatArray)
     return np.asarray(
         y[..., at] + t * (first + t * (3.0 * rise - 2.0 * first - last + t * (first + last - 2.0 * rise)))
     )
+
+
+@functools.lru_cache(maxsize=32)
+def _hermite(x: bytes, station: bytes) -> tuple[FloatArray, FloatArray]:
+    """Weights of the value and of the slope at each point in the cubics at stations, each (points, stations)."""
+    points, at = np.frombuffer(x), np.frombuffer(station)
+    ones, zeros = np.eye(points.size), np.zeros((points.size, points.size))
+    return _cubic(points, ones, zeros, at), _cubic(points, zeros, ones, at)
 
 
 def _slopes(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -198,6 +214,40 @@ def _end_slopes(width: FloatArray, next_width: FloatArray, rise: FloatArray, nex
     slope = ((2.0 * width + next_width) * rise - width * next_rise) / (width + next_width)
     overshoots = (rise * next_rise <= 0.0) & (np.abs(slope) > 3.0 * np.abs(rise))
     return np.where(slope * rise <= 0.0, 0.0, np.where(overshoots, 3.0 * rise, slope))
+
+
+def _slope_growths(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Derivatives of the slopes by each value (values, points); their mean where left and right ones differ."""
+    width, last = np.diff(x), len(x) - 1
+    rise = np.diff(y) / width
+    by_rise = np.zeros((len(x), last))
+    if last == 1:
+        by_rise[:] = 1.0
+    else:
+        after, before, inner = rise[1:], rise[:-1], np.arange(last - 1)
+        near, far = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]
+        sums = near * after + far * before
+        # [(n + f) / (n/b + f/a)]: by b it grows with n/(n + f) (s/b)², by a with f/(n + f) (s/a)²
+        mean = (near + far) / np.where(sums == 0.0, 1.0, sums)
+        share = np.where(after * before > 0.0, 1.0, 0.5 * (after * before == 0.0)) / (near + far)
+        by_rise[inner + 1, inner] = share * near * (after * mean) ** 2
+        by_rise[inner + 1, inner + 1] = share * far * (before * mean) ** 2
+        for point, one, two in ((0, 0, 1), (last, last - 1, last - 2)):
+            total = width[one] + width[two]
+            slope = ((total + width[one]) * rise[one] - width[one] * rise[two]) / total
+            if rise[one] == 0.0:
+                by_rise[point, one] = 1.5 * (rise[two] != 0.0)
+            elif slope * rise[one] <= 0.0:
+                continue
+            elif rise[one] * rise[two] <= 0.0 and abs(slope) > 3.0 * abs(rise[one]):
+                by_rise[point, one] = 3.0
+            else:
+                by_rise[point, one], by_rise[point, two] = 1.0 + width[one] / total, -width[one] / total
+    by_rise /= width
+    out = np.zeros((len(x), len(x)))
+    out[1:] += by_rise.T
+    out[:-1] -= by_rise.T
+    return out
 
 
 def evenly_spread(values: npt.ArrayLike, front: float, rear: float) -> StationTable:
