@@ -1,28 +1,24 @@
-"""Least squares with all coefficients ≥ 0, exact for the few coefficients of a material law.
+"""Least squares with all coefficients ≥ 0, for the few coefficients of a material law.
 
-With at most six coefficients every set of active bounds can be tried. The one that meets the Karush-Kuhn-Tucker
-conditions is the answer: coefficients > 0 where free, and for a coefficient on its bound no gain in leaving it.
+The active bounds are those of Lawson and Hanson (1974), *Solving least squares problems*, as `scipy.optimize.nnls`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import nnls
 
-from .._support.arrays import BoolArray, FloatArray
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .least_squares import as_predictors, as_response
 
 MOST_COEFFICIENTS = 6
-_KKT_TOLERANCE = 1e-12
-"""Share of the gradient, for columns of length one: some thousand roundings."""
 _DEPENDENT = 1e-13
-"""A pivot of a scaled Gram matrix not above this is zero but for rounding."""
+"""An eigenvalue of a scaled Gram matrix not above this is zero but for rounding."""
 
 
 class Solved(NamedTuple):
@@ -61,7 +57,7 @@ class Condensed:
         A = A if projection is None else A @ projection
         _require_few(A.shape[1])
         unit = _lengths(A)
-        best = _best_support(A / unit, z, self.n)
+        best = _solve(A / unit, z, self.n)
         return Solved(best.coefficients / unit, best.rank)
 
 
@@ -96,9 +92,7 @@ def _lengths(A: FloatArray) -> FloatArray:
 
 def _require_few(p: int) -> None:
     if not 1 <= p <= MOST_COEFFICIENTS:
-        raise ParameterError(
-            "{p} coefficients; every set of bounds is tried, which is practical for 1 to 6 of them"
-        ).tag("too_many", p=p)
+        raise ParameterError("{p} coefficients; 1 to {most} are allowed").tag("too_many", p=p, most=MOST_COEFFICIENTS)
 
 
 def _root_weights(weights: npt.ArrayLike, n: int) -> FloatArray:
@@ -111,35 +105,12 @@ def _root_weights(weights: npt.ArrayLike, n: int) -> FloatArray:
     return np.sqrt(w)
 
 
-@cache
-def _supports(p: int) -> tuple[tuple[int, ...], ...]:
-    """All sets of free coefficients: the full one first, as the likeliest, then from the smallest up."""
-    everything = tuple(range(p))
-    return (everything, *(s for size in range(p) for s in combinations(everything, size)))
-
-
-def _best_support(A: FloatArray, z: FloatArray, n: int) -> Solved:
+def _solve(A: FloatArray, z: FloatArray, n: int) -> Solved:
     """Minimise ‖A x - z‖ over x ≥ 0 for a small A with columns of length one or zero, condensed from n rows."""
-    p = A.shape[1]
     free, rank = _least_squares(A, z, n)
-    if rank == p and (free > 0.0).all():
+    if rank == A.shape[1] and (free > 0.0).all():
         return Solved(free, rank)
-    best, least = np.zeros(p), np.inf
-    for support in _supports(p)[1:]:
-        columns, x = list(support), np.zeros(p)
-        if columns:
-            solution, own_rank = _least_squares(A[:, columns], z, n)
-            if own_rank < len(columns) or not (solution > 0.0).all():  # dependent columns, or beyond the bound
-                continue
-            x[columns] = solution
-        gain = A.T @ (z - A @ x)
-        gain[columns] = 0.0
-        violation = max(float(np.max(gain, initial=0.0)), 0.0)
-        if violation <= _KKT_TOLERANCE * (float(np.linalg.norm(z)) + float(np.sum(x))):
-            return Solved(x, rank)
-        if violation < least:
-            best, least = x, violation
-    return Solved(best, rank)
+    return Solved(np.asarray(nnls(A, z)[0], dtype=float), rank)
 
 
 def _least_squares(A: FloatArray, z: FloatArray, n: int) -> tuple[FloatArray, int]:
@@ -176,69 +147,13 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     result = np.full(m.shape, np.nan)
     if not np.any(finite):
         return result
-    # the batch goes last: each step below is then one pass over contiguous memory
-    G, m = np.moveaxis(G[finite], 0, -1), m[finite].T
-    scale = np.sqrt(np.maximum(np.einsum("iib->ib", G), 0.0))
+    scale = np.sqrt(np.maximum(np.einsum("bii->bi", G[finite]), 0.0))
     unit = np.where(scale > 0, scale, 1.0)
-    G = np.ascontiguousarray(G / (unit[:, None] * unit[None, :]))
-    result[finite] = (_solve_batch(G, m / unit) / unit).T
+    values, vectors = np.linalg.eigh(G[finite] / (unit[:, :, None] * unit[:, None, :]))
+    root = np.sqrt(np.where(values > _DEPENDENT, values, 0.0))
+    designs = root[:, :, None] * np.swapaxes(vectors, 1, 2)
+    turned = np.einsum("bij,bi->bj", vectors, m[finite] / unit)
+    responses = np.divide(turned, root, out=np.zeros_like(turned), where=root > 0.0)
+    solutions = [nnls(A, z)[0] for A, z in zip(designs, responses, strict=True)]
+    result[finite] = np.array(solutions) / unit
     return result
-
-
-def _solve_batch(G: FloatArray, m: FloatArray) -> FloatArray:
-    """Solve B problems with G (p, p, B) of unit diagonal and m (p, B); solved ones leave the batch."""
-    p, B = m.shape
-    best, least = np.zeros((p, B)), np.full(B, np.inf)
-    open_ = np.arange(B)
-    for support in _supports(p):
-        here_G, here_m = G[:, :, open_], m[:, open_]
-        x, feasible = _solved_batch(here_G, here_m, support)
-        violation = _violation(here_G, here_m, x, support)
-        better = feasible & (violation < least[open_])
-        best[:, open_[better]] = x[:, better]
-        least[open_[better]] = violation[better]
-        allowed = _KKT_TOLERANCE * (np.max(np.abs(here_m), axis=0) + np.sum(x, axis=0))
-        open_ = open_[~(feasible & (violation <= allowed))]
-        if open_.size == 0:
-            break
-    return best
-
-
-def _violation(G: FloatArray, m: FloatArray, x: FloatArray, support: tuple[int, ...]) -> FloatArray:
-    """Largest decrease (B,) of the objective per unit of a coefficient that the support holds at 0; 0: none."""
-    worst = np.zeros(m.shape[1])
-    for j in set(range(len(m))) - set(support):
-        gain = m[j].copy()
-        for k in support:
-            gain -= G[j, k] * x[k]
-        np.maximum(worst, gain, out=worst)
-    return worst
-
-
-def _solved_batch(G: FloatArray, m: FloatArray, support: tuple[int, ...]) -> tuple[FloatArray, BoolArray]:
-    """Solve G x = m on the support by L D Lᵀ; the second result is True where G is regular and all x > 0."""
-    x, feasible = np.zeros_like(m), np.ones(m.shape[1], dtype=bool)
-    lower: dict[tuple[int, int], FloatArray] = {}
-    pivot: dict[int, FloatArray] = {}
-    for i, j in ((i, j) for j in support for i in support if i >= j):  # on and below the diagonal, by columns
-        earlier = [k for k in support if k < j]
-        entry = G[i, j].copy()
-        for k in earlier:
-            entry -= lower[i, k] * lower[j, k] * pivot[k]
-        if i > j:
-            lower[i, j] = entry / pivot[j]
-        else:
-            regular = entry > _DEPENDENT
-            feasible &= regular
-            pivot[j] = np.where(regular, entry, 1.0)
-    for i in support:
-        x[i] = m[i]
-        for k in (k for k in support if k < i):
-            x[i] -= lower[i, k] * x[k]
-    for i in reversed(support):
-        x[i] /= pivot[i]
-        for k in (k for k in support if k > i):
-            x[i] -= lower[k, i] * x[k]
-        feasible &= x[i] > 0
-    x[:, ~feasible] = 0.0
-    return x, feasible
