@@ -48,7 +48,8 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
             new = sorted(path.relative_to(hidden) for path in stage.path.rglob("*") if path.is_file())
             old = [*map(Path, stage.stale), *new]
             others = [folder / name for name in old if (folder / name).exists()]
-            if others and not (folder / last).exists():
+            was_killed = any(path != stage.path for path in folder.glob(f"{_PREFIX}*"))  # a run during its moves
+            if others and not was_killed and not (folder / last).exists():
                 raise OutputError(
                     "{path} is not from an earlier run and is kept. Choose another folder or move the file."
                 ).tag("file_kept", path=others[0])

@@ -111,7 +111,7 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 
 def open_engine(place: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Connect to the database and bring its schema up to date.
+    """Connect to the database, and create the tables of a new one.
 
     Raises StoreError: it is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
@@ -128,7 +128,7 @@ def open_engine(place: Path, *, create: bool, busy_timeout_s: float) -> Engine:
 def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
     try:
-        is_outdated = _is_outdated(engine, path)
+        revision = _revision(engine, path)
     except DBAPIError as error:
         # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
         # is writing, and SQLite can read the file as immutable.
@@ -137,9 +137,14 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
             raise
         engine = _engine(path, "ro&immutable=1", busy_timeout_s)
-        is_outdated = _is_outdated(engine, path)
-    if is_outdated:
-        _bring_up_to_date(engine, path, busy_timeout_s)
+        revision = _revision(engine, path)
+    if revision is None:
+        _create_tables(engine, busy_timeout_s)
+    elif revision != REVISION:
+        raise StoreError(
+            "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
+            "skisnow, or name another store."
+        ).tag("unknown_schema", place=path, revision=revision, known=REVISION)
     _require_tables(engine, path)
     return engine
 
@@ -179,59 +184,29 @@ def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
     return engine
 
 
-def _revision(connection: Connection, path: Path) -> str | None:
-    """Revision of the store; None for a file without tables."""
-    tables = set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
-    if not tables - {"alembic_version"}:
-        return None
-    if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
-        raise StoreError("{path} is an SQLite database of another program, not a store; name another file.").tag(
-            "other_database", path=path
-        )
-    versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
-    if len(versions) != 1 or not isinstance(versions[0], str):
-        raise StoreError("{path} is damaged: its version is missing. Restore a backup.").tag("damaged", path=path)
-    return versions[0]
-
-
-def _is_outdated(engine: Engine, path: Path) -> bool:
+def _revision(engine: Engine, path: Path) -> int | None:
+    """Revision of the schema of the store; None for a file without tables."""
     with reading(engine) as connection:
-        return _needs_migration(_revision(connection, path), path)
+        if _is_empty(connection):
+            return None
+        if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
+            raise StoreError("{path} is an SQLite database of another program, not a store; name another file.").tag(
+                "other_database", path=path
+            )
+        return int(connection.exec_driver_sql("PRAGMA user_version").scalar_one())
 
 
-def _needs_migration(revision: str | None, path: Path) -> bool:
-    """True if a store with that revision needs a migration.
-
-    Raises StoreError: this program does not know the migration.
-    """
-    if revision == REVISION:
-        return False  # the usual case: alembic need not even be imported
-    from .migrations import is_known
-
-    if revision is not None and not is_known(revision):
-        raise StoreError(
-            "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
-            "skisnow, or name another store."
-        ).tag("unknown_schema", place=path, revision=revision, known=REVISION)
-    return True
+def _is_empty(connection: Connection) -> bool:
+    return not connection.exec_driver_sql("SELECT count(*) FROM sqlite_master WHERE type = 'table'").scalar_one()
 
 
-def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
-    from .migrations import upgrade
-
+def _create_tables(engine: Engine, busy_timeout_s: float) -> None:
     _use_write_ahead_log(engine, busy_timeout_s)
-    with engine.connect() as connection:
-        # Some migrations rebuild tables, which foreign keys would prevent. They can only be switched off outside of a
-        # transaction, and are checked before its end.
-        connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
-        with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
-            if not _needs_migration(_revision(connection, path), path):
-                return  # another process was faster
-            upgrade(connection)
-            if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
-                raise StoreError(
-                    "{path} contains rows with invalid references; it was not changed. Restore a backup."
-                ).tag("damaged", path=path)
+    with writing(engine) as connection:
+        if _is_empty(connection):  # otherwise another process was faster
+            metadata.create_all(connection)
+            connection.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
+            connection.exec_driver_sql(f"PRAGMA user_version = {REVISION}")
 
 
 def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:
