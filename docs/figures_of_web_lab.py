@@ -91,12 +91,12 @@ def correct(page: Page, address: str) -> None:
 
 
 def edit(page: Page) -> None:
-    """A carver made stiffer, and narrower at the boot, beside the one of the catalogue."""
-    for label, text in (("EI ×", "1.3"), ("Width (mm) at 0.000 m", "68")):
+    """A carver made stiffer, and narrower, beside the one of the catalogue."""
+    for label, text in (("EI ×", "1.3"), ("Width ×", "0.95")):
         page.get_by_label(label, exact=True).fill(text)
         page.keyboard.press("Tab")
         page.wait_for_timeout(800)
-    page.set_viewport_size({"width": 1280, "height": 1640})
+    page.set_viewport_size({"width": 1280, "height": 1040})
     picture(page, "skis")
     page.set_viewport_size(DESK)  # type: ignore[arg-type]
 

@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -14,7 +13,7 @@ import pytest
 
 from skisnow.cli import build_parser
 from skisnow.cli.options import number
-from skisnow.cli.output import Progress, announced
+from skisnow.cli.output import Progress
 from skisnow.cli.shell import candidates, manual_page
 
 from ..docs.page_text import page_text
@@ -257,19 +256,6 @@ def test_time_to_end(clock: list[float], capsys: pytest.CaptureFixture[str], ter
     texts = [text.strip() for text in capsys.readouterr().err.split("\r") if text.strip()]
     numbers = [[int(number) for number in re.findall(r"\d+", text)] for text in texts]
     assert numbers == [[0, 10], [1, 10, 18], [2, 10, 16], [11, 10], []]
-
-
-def test_silent_work_is_announced(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    with announced("quick"):
-        pass
-    with announced("slow", patience_s=0.0):
-        time.sleep(0.05)
-    assert capsys.readouterr().err == "slow …\n"
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    with announced("slow", patience_s=0.0):
-        time.sleep(0.05)
-    text = "slow … 0 s"
-    assert capsys.readouterr().err == f"\r{text}\r{' ' * len(text)}\r"
 
 
 def test_lines_at_once(clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

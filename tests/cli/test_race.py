@@ -13,7 +13,7 @@ from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
 from skisnow.cli.shell import json_schema
 from skisnow.racing.windows import Windows
-from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
+from skisnow.replay import replay_bytes, replay_of_file
 from skisnow.report.figures.drawing import FORMS
 from skisnow.report.run.file import write_run_file
 from skisnow.report.run.page import run_page
@@ -43,20 +43,16 @@ def folder(tmp_path: Path) -> Path:
     return place
 
 
-def test_page_and_both_models_are_those_of_the_library(folder: Path, capsys: Printed) -> None:
-    assert main(["replay", str(folder), "--model", "--moment-s", "1.5", "--exaggeration", "4"]) == 0
-    told = [Path(line) for line in capsys.readouterr().out.splitlines()]
-    assert told == [folder / "replay.html", folder / "replay.glb", folder / "replay-1.50s.glb"]
-    replay = replay_of_file(folder)
-    assert held_replay(told[0], "run") == replay_bytes(replay)
-    assert told[1].read_bytes() == moving_replay_model(replay, exaggeration=4.0)
-    assert told[2].read_bytes() == replay_model(replay, 1.5, exaggeration=4.0)
+def test_the_page_is_that_of_the_library(folder: Path, capsys: Printed) -> None:
+    assert main(["replay", str(folder)]) == 0
+    assert capsys.readouterr().out == f"{folder / 'replay.html'}\n"
+    assert held_replay(folder / "replay.html", "run") == replay_bytes(replay_of_file(folder))
 
 
 def test_a_second_run_and_a_track_are_in_the_page(folder: Path, tmp_path: Path) -> None:
     track = tmp_path / "measured.csv"
     track.write_text("time_s,x_m,y_m\n10,0,0\n11,4,1\n12,8,3\n", encoding="utf-8")
-    words = ["--over", str(folder), "--track", str(track), "--starts-at-s", "0.5", "--title", "Both"]
+    words = [str(folder), "--track", str(track), "--starts-at-s", "0.5", "--title", "Both"]
     assert main(["replay", str(folder), *words, "--out", str(tmp_path / "new")]) == 0
     page = tmp_path / "new" / "replay.html"
     head, shown = unpacked(held_replay(page, "run"))
@@ -79,10 +75,8 @@ def test_a_page_that_is_no_report_of_a_run_stays_as_it_is(folder: Path, tmp_path
     assert (folder / "report.html").read_text(encoding="utf-8") == report
 
 
-@pytest.mark.parametrize("words", [["{}"], ["--ghost", "{}"]])
-def test_a_second_run_is_the_ghost_of_the_first(folder: Path, words: list[str], tmp_path: Path) -> None:
-    named = [word.format(folder) for word in words]
-    assert main(["replay", str(folder), *named, "--out", str(tmp_path / "new")]) == 0
+def test_a_second_run_is_the_ghost_of_the_first(folder: Path, tmp_path: Path) -> None:
+    assert main(["replay", str(folder), str(folder), "--out", str(tmp_path / "new")]) == 0
     assert held_replay(tmp_path / "new" / "replay.html", "ghost") == replay_bytes(replay_of_file(folder))
 
 
@@ -105,17 +99,6 @@ def test_a_folder_without_a_run_is_named(tmp_path: Path, capsys: Printed) -> Non
     assert main(["replay", str(tmp_path)]) == 1
     assert "run.nc" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_models_of_an_earlier_run_do_not_stay_beside_a_new_one(tmp_path: Path) -> None:
-    from skisnow.report.run.page import write_run
-
-    run, folder = circle_run(count=21), tmp_path / "turn"
-    write_run(run, folder)
-    assert main(["replay", str(folder), "--model", "--moment-s", "1"]) == 0
-    write_run(run, folder)
-    assert not [each.name for each in folder.iterdir() if each.suffix == ".glb" or each.name == "replay.html"]
 
 
 EASY = [

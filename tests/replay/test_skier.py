@@ -13,9 +13,7 @@ from skisnow.geometry.vectors import axes_of
 from skisnow.interop.opensim import read_motion
 from skisnow.replay import (
     Replay,
-    moving_replay_model,
     replay_bytes,
-    replay_model,
     replay_of_file,
     replay_of_run,
 )
@@ -26,8 +24,6 @@ from skisnow.replay.skier import (
     STAND_HEIGHT,
     _round,
     centre_of_mass,
-    part_poses,
-    skier_mesh,
     skier_parts,
     two_bones,
 )
@@ -41,7 +37,6 @@ from skisnow.track.course import Course, Gate
 from tests.present import present
 
 from ..report.runs import circle_run
-from .glb_files import GlbFile, Playing
 from .held import unpacked
 from .test_of_run import written
 
@@ -184,40 +179,6 @@ def test_a_gate_that_was_not_reached_has_no_time(run: Run) -> None:
     assert np.isnan(present(late.gate_times)).tolist() == [False, False, True]
     back = unpacked(replay_bytes(late))[1]["gate_time"]
     assert np.isnan(back).tolist() == [False, False, True]
-
-
-def test_both_models_have_the_skier(replay: Replay) -> None:
-    still, moving = GlbFile(replay_model(replay, float(replay.time[4]))), GlbFile(moving_replay_model(replay))
-    (mesh,) = [each for each in still.words["meshes"] if each["name"] == "skier"]
-    vertices = still.array(mesh["primitives"][0]["attributes"]["POSITION"])
-    assert vertices == pytest.approx(skier_mesh(replay, 4).vertices, abs=2e-6)
-    names = {part.name for part in skier_parts(present(replay.skier).height)}
-    assert len(names) == 14
-    assert names <= {each["name"] for each in moving.words["nodes"]}
-    whole = skier_mesh(replay, 6)
-    parts = skier_parts(present(replay.skier).height)
-    first = 0
-    playing = Playing(moving, float(replay.time[6] - replay.time[0]))
-    upright = Rotation.from_quat(moving.words["nodes"][moving.node("run")]["rotation"])
-    for part in parts:
-        own = part.mesh.vertices
-        matrix = playing.matrix(moving.node(part.name))
-        placed = own @ matrix[:3, :3].T + matrix[:3, 3]
-        assert placed == pytest.approx(upright.apply(whole.vertices[first : first + len(own)]), abs=5e-6), part.name
-        first += len(own)
-
-
-def test_parts_stand_upright_between_their_joints(replay: Replay) -> None:
-    """Their z axis goes from one joint to the other; their x axis has no part to the body's left."""
-    for part in skier_parts(HEIGHT):
-        if part.start not in JOINTS:
-            continue
-        start, turn = part_poses(present(replay.skier), part)
-        axes = Rotation.from_quat(turn, scalar_first=True).as_matrix()
-        end = present(replay.skier).joints[:, JOINTS.index(part.end)]
-        way = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
-        assert axes[:, :, 2] == pytest.approx(way, abs=1e-9), part.name
-        assert axes[:, 1, 0] == pytest.approx(np.zeros(len(start)), abs=1e-9), part.name
 
 
 def test_a_round_shape_is_closed_in_the_middles_of_its_end_rings() -> None:

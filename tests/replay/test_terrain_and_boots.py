@@ -7,20 +7,16 @@ import numpy as np
 import pytest
 
 from skisnow.geometry.vectors import axes_of
-from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_file, replay_of_run
-from skisnow.replay.meshes import _snow_normals, grid_mesh, snow_mesh
+from skisnow.replay import Replay, replay_bytes, replay_of_file, replay_of_run
 from skisnow.replay.page import _arrays_by_name as arrays_by_name
-from skisnow.replay.replay import ski_edges
-from skisnow.scenario import Profile, Terrain, read_terrain
+from skisnow.scenario import Terrain, read_terrain
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.track.course import Course, Gate
 from tests.present import present
 
 from ..report.runs import circle_run
-from .glb_files import GlbFile
-from .held import unpacked
-from .test_moving_model import edges_in
+from .held import ski_edges, snow_heights, unpacked
 from .test_of_run import written
 
 X, Y = np.arange(-6.0, 31.0, 1.0), np.arange(-20.0, 21.0, 1.0)
@@ -52,51 +48,20 @@ def test_a_tilted_plane_as_a_grid_is_that_plane_everywhere_and_heights_are_those
     shown = present(replay_of_run(over(plane)).terrain)
     assert shown.grade == pytest.approx((-0.2, 0.05), abs=1e-12)
     for x, y in ((3.21, 4.4), (-300.0, 7.0), (500.0, -900.0)):
-        assert float(shown.heights(x, y)) == pytest.approx(-0.2 * x + 0.05 * y, abs=1e-9)
+        assert float(snow_heights(shown, x, y)) == pytest.approx(-0.2 * x + 0.05 * y, abs=1e-9)
     run = over(hills(X[:, None], Y))
     terrain = present(replay_of_run(run).terrain)
     x, y = np.random.default_rng(1).uniform((-4.0, -10.0), (25.0, 10.0), (200, 2)).T
-    apart = terrain.heights(x, y) - run.scenario.slope.surface.heights(x, y)  # type: ignore[union-attr]
+    apart = snow_heights(terrain, x, y) - run.scenario.slope.surface.heights(x, y)  # type: ignore[union-attr]
     # straight over half a metre: 0.3 m (1/4² + 1/5²) 0.5² / 8 = 1 mm, the patches' bends at the places besides
     assert np.abs(apart).max() < 2e-3
     assert max(terrain.x[0], terrain.y[0]) < run.place[:, :2].min() - 29.0
 
 
-def test_a_long_run_has_no_more_places_than_a_screen_needs_and_meshes_lie_on_the_snow() -> None:
+def test_a_long_run_has_no_more_places_than_a_screen_needs() -> None:
     run = over(hills(X[:, None], Y))
     far = present(replay_of_run(replace(run, place=run.place * 60.0)).terrain)
     assert 30_000 < far.height.size < 45_000
-    replay = replay_of_run(over(hills(X[:, None], Y)))
-    for mesh, least, most in ((snow_mesh(replay), 0.0, 1e-9), (grid_mesh(replay), 4.5e-4, 5.5e-4)):
-        above = mesh.vertices[:, 2] - present(replay.terrain).heights(*mesh.vertices[:, :2].T)
-        assert above.min() >= least - 1e-9
-        assert above.max() <= most
-    triangles = snow_mesh(replay).pieces
-    corners = snow_mesh(replay).vertices[triangles]
-    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] / 2.0
-    low, high = snow_mesh(replay).vertices[:, :2].min(axis=0), snow_mesh(replay).vertices[:, :2].max(axis=0)
-    assert abs(area).sum() == pytest.approx(float(np.prod(high - low)))  # all of it once
-
-
-def test_lines_over_a_plane_are_in_pieces_of_a_metre_and_over_bent_snow_in_finer_ones() -> None:
-    def longest(replay: Replay) -> np.ndarray:
-        mesh = grid_mesh(replay)
-        ends = mesh.vertices[mesh.pieces][:, :, :2]
-        return np.abs(ends[:, 1] - ends[:, 0]).max(axis=0)
-
-    run = circle_run(count=5)
-    profile = Profile(np.arange(-60.0, 61.0), -0.2 * np.arange(-60.0, 61.0))
-    along = replace(run, scenario=replace(run.scenario, slope=profile))
-    assert longest(replay_of_run(run)) == pytest.approx([1.0, 1.0])
-    assert longest(replay_of_run(along)) == pytest.approx([0.25, 1.0])
-    assert longest(replay_of_run(over(hills(X[:, None], Y)))) == pytest.approx([0.25, 0.25], rel=0.02)
-
-
-def test_normals_are_those_of_the_snow_down_and_aside() -> None:
-    replay = replay_of_run(over(-0.2 * X[:, None] + 0.3 * Y))
-    normal = np.array([0.2, -0.3, 1.0]) / np.sqrt(1.0 + 0.2**2 + 0.3**2)
-    places = np.array([[1.0, 2.0, 0.0], [7.3, -4.1, 0.0]])
-    assert _snow_normals(replay, places) == pytest.approx(np.tile(normal, (2, 1)), abs=1e-9)
 
 
 def test_gates_of_the_course_stand_on_the_snow() -> None:
@@ -108,7 +73,7 @@ def test_gates_of_the_course_stand_on_the_snow() -> None:
     assert found[:, 2] == pytest.approx(run.scenario.slope.surface.heights([4.0, 9.0], [2.0, -1.0]))  # type: ignore[union-attr]
 
 
-def test_skis_are_where_their_boots_have_them_and_moving_boots_are_in_the_moving_model() -> None:
+def test_skis_are_where_their_boots_have_them() -> None:
     """By hand: the middle of a flat ski's base goes from the boot along its own axis ahead."""
     run = run_with_boots()
     skis = replace(run.skis, bending=0.0 * run.skis.bending, twist=0.0 * run.skis.twist)
@@ -122,11 +87,6 @@ def test_skis_are_where_their_boots_have_them_and_moving_boots_are_in_the_moving
             assert edges[ski].mean(axis=1) == pytest.approx(middle, abs=1e-12)
             across = edges[ski, :, 0] - edges[ski, :, 1]
             assert across == pytest.approx(2.0 * replay.skis.half_width[:, None] * left, abs=1e-12)
-    replay = replay_of_run(run_with_boots())
-    model = GlbFile(moving_replay_model(replay))
-    for frame, time in enumerate(replay.time):
-        found = edges_in(model, float(time), replay.tilt)
-        assert found == pytest.approx(ski_edges(replay, frame), abs=5e-6)
 
 
 def same(one: Replay, other: Replay) -> None:

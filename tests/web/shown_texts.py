@@ -39,7 +39,6 @@ NO_WORDS: Final = frozenset(
         "scenario = {}",
         ", log = true",
         "is being written by another run",  # looked for in what the command says
-        "attachment; filename*=UTF-8''{}.glb",
         "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox",
         "beside above",  # classes of the stylesheet
         "card ask",

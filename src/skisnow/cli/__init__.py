@@ -6,6 +6,7 @@ import argparse
 import io
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -14,6 +15,7 @@ from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS
 from .output import Ended
 
 LONGEST_MESSAGE: Final = 8_000
+STATUS: Final = 70  # exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -85,9 +87,9 @@ def _report_end(error: Exception | KeyboardInterrupt) -> int:
     if isinstance(error, SkisnowError | MemoryError):
         _print_error(error)
         return 1
-    from .output import report_failure
-
-    return report_failure(error)
+    traceback.print_exception(error)
+    print("skisnow: an error that was not foreseen; please send the lines above with what you did.", file=sys.stderr)
+    return STATUS
 
 
 def _print_error(error: SkisnowError | MemoryError) -> None:

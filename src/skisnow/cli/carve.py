@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._support.messages import Message, in_language, local_number
 from .options import add_language, number, whole_number
-from .output import Progress, announced, prepare_figure, print_json, print_warnings
+from .output import Progress, prepare_figure, print_json, print_warnings
 
 if TYPE_CHECKING:
     from ..carving.answer import CarveAnswer
@@ -144,12 +144,11 @@ def _exit_status(answers: list[CarveAnswer]) -> int:
 
 
 def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
-    with announced("loading"):
-        from ..carving.answer import answer_question
-        from ..carving.question import CARVE_KEYS, carve_question
+    from ..carving.answer import answer_question
+    from ..carving.question import CARVE_KEYS, carve_question
 
-        question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
-        return [answer_question(carve_question(question | {"ski": ski})) for ski in options.ski]
+    question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
+    return [answer_question(carve_question(question | {"ski": ski})) for ski in options.ski]
 
 
 def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -180,10 +179,9 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def design_ski(options: argparse.Namespace) -> int:
     """Search a ski design, write and print it; returns exit status 1 if one of its goals is not reached."""
     prepare_figure(options.figure)
-    with announced("loading"):
-        from ..design import design_ski, read_design
+    from ..design import design_ski, read_design
 
-        task = read_design(options.design)
+    task = read_design(options.design)
     if options.front is not None:
         return _front(options, task)
     with Progress() as progress:
@@ -218,8 +216,7 @@ def _front(options: argparse.Namespace, task: DesignTask) -> int:
     """Search the Pareto front of two targets, write it, and print the paths or the points; returns exit status 0."""
     from ..design.search import design_front, write_front
 
-    with announced("searching"):
-        front = design_front(task, points=options.front)
+    front = design_front(task, points=options.front)
     paths = write_front(front, options.out or options.design.parent)
     if options.json:
         print_json([asdict(point) for point in front])

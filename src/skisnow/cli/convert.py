@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 from .options import Parser, add_changes, scenario_of, whole_number
-from .output import announced
 
 
 def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -37,18 +36,16 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 def convert_file(options: argparse.Namespace) -> int:
     """Convert a file into another format, and print the path of the written file."""
     from .._support.units import MM
+    from ..interop.convert import ConvertOptions, convert
 
-    with announced(f"reading {options.source}"):
-        from ..interop.convert import ConvertOptions, convert
-
-        depth = options.layers_to_mm
-        convert_options = ConvertOptions(
-            site=options.site,
-            time=options.time,
-            layers_to=None if depth is None else depth * MM,
-            report=lambda text: print(f"note: {text}", file=sys.stderr),
-        )
-        convert(options.source, options.target, convert_options)
+    depth = options.layers_to_mm
+    convert_options = ConvertOptions(
+        site=options.site,
+        time=options.time,
+        layers_to=None if depth is None else depth * MM,
+        report=lambda text: print(f"note: {text}", file=sys.stderr),
+    )
+    convert(options.source, options.target, convert_options)
     print(options.target)
     return 0
 
@@ -102,14 +99,13 @@ def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
 def _write_fmu(options: argparse.Namespace) -> int:
     if options.skis is not None and not options.contact:
         options.parser.error("--skis goes with --contact: a sledge has two")
-    with announced("writing"):
-        from ..interop import write_contact_fmu, write_sledge_fmu
+    from ..interop import write_contact_fmu, write_sledge_fmu
 
-        scenario = scenario_of(options).scenario
-        if options.contact:
-            written = write_contact_fmu(scenario, options.out, fmi=options.fmi, skis=options.skis or 2)
-        else:
-            written = write_sledge_fmu(scenario, options.out, fmi=options.fmi)
+    scenario = scenario_of(options).scenario
+    if options.contact:
+        written = write_contact_fmu(scenario, options.out, fmi=options.fmi, skis=options.skis or 2)
+    else:
+        written = write_sledge_fmu(scenario, options.out, fmi=options.fmi)
     print(written)
     return 0
 

@@ -19,7 +19,7 @@ from .options import (
     seed_number,
     whole_number,
 )
-from .output import Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
+from .output import Progress, ending_is_an_interrupt, prepare_output, print_json, print_warnings
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 
@@ -97,13 +97,12 @@ def run(options: argparse.Namespace) -> int:
 
 def _prepare(options: argparse.Namespace) -> ScenarioFile:
     """Check the options and the output folder before the search; returns the scenario."""
-    with announced("loading"):
-        from ..identification.intervals import require_bootstrap, require_emcee
+    from ..identification.intervals import require_bootstrap, require_emcee
 
-        require_bootstrap(options.bootstrap, options.bootstrap_by)
-        if options.posterior:
-            require_emcee()
-        scenario_input = scenario_of(options)
+    require_bootstrap(options.bootstrap, options.bootstrap_by)
+    if options.posterior:
+        require_emcee()
+    scenario_input = scenario_of(options)
     prepare_output(options.out)
     print_warnings(scenario_input.warnings)
     return scenario_input

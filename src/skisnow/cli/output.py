@@ -1,24 +1,19 @@
-"""Output and end of a command: JSON, warnings, progress, the folder for files, signals and unforeseen errors."""
+"""Output and end of a command: JSON, warnings, progress, the folder for files, and signals."""
 
 from __future__ import annotations
 
 import contextlib
 import json
 import os
-import platform
 import re
-import secrets
 import shutil
 import signal
 import sys
-import tempfile
 import threading
 import time
-import traceback
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final, Self
 
@@ -63,32 +58,6 @@ LINES_AT_ONCE: Final = "SKISNOW_PROGRESS_LINES"
 """Environment variable: for a program that reads them, lines come as often as a terminal's."""
 
 
-class MovingLine:
-    """Line of a terminal on standard error that each text overwrites; without a terminal each text is a new line."""
-
-    def __init__(self) -> None:
-        self.moves = sys.stderr.isatty()
-        self._width = 0
-
-    def show(self, text: str) -> None:
-        """Overwrite the previous text; a text is cut at the width of the terminal."""
-        if self.moves:
-            room = max(shutil.get_terminal_size().columns - 1, 10)
-            shown = text if len(text) <= room else f"{text[: room - 1]}…"
-            sys.stderr.write("\r" + shown.ljust(self._width))
-            self._width = len(shown)
-        else:
-            sys.stderr.write(text + "\n")
-        sys.stderr.flush()
-
-    def wipe(self) -> None:
-        """Erase the text, so that the next output begins in the same line."""
-        if self._width:
-            sys.stderr.write("\r" + " " * self._width + "\r")
-            sys.stderr.flush()
-            self._width = 0
-
-
 class Progress:
     """Callable that prints the current step of long work, first after one second and then from time to time.
 
@@ -96,10 +65,11 @@ class Progress:
     """
 
     def __init__(self, *, patience_s: float = 1.0, pause_s: float | None = None) -> None:
-        self._line = MovingLine()
+        self._rewrites = sys.stderr.isatty()
+        self._width = 0
         self._next = time.monotonic() + patience_s
         self._begun: tuple[tuple[str, int], float, int] | None = None
-        often = self._line.moves or LINES_AT_ONCE in os.environ
+        often = self._rewrites or LINES_AT_ONCE in os.environ
         self._pause = pause_s if pause_s is not None else PAUSE_S if often else PAUSE_OF_LINES_S
 
     def __call__(self, text: str) -> None:
@@ -108,7 +78,7 @@ class Progress:
         if time_s < self._next:
             return
         self._next = time_s + self._pause
-        self._line.show(text + self._time_left(text, time_s))
+        self._show(text + self._time_left(text, time_s))
 
     def _time_left(self, text: str, time_s: float) -> str:
         """Text with the remaining time of work that is counted as in "3 of 15"; "" for the first text of its kind."""
@@ -130,33 +100,20 @@ class Progress:
 
     def __exit__(self, *_: object) -> None:
         """Erase the line."""
-        self._line.wipe()
+        if self._width:
+            sys.stderr.write("\r" + " " * self._width + "\r")
+            sys.stderr.flush()
 
-
-@contextmanager
-def announced(doing: str, *, patience_s: float = 2.0) -> Iterator[None]:
-    """Print `doing` if the block takes longer than `patience_s` seconds; on a terminal also the elapsed time."""
-    line, done, begun = MovingLine(), threading.Event(), time.monotonic()
-
-    def tell() -> None:
-        if done.wait(patience_s):
-            return
-        if not line.moves:
-            line.show(f"{doing} …")
-            return
-        while True:
-            line.show(f"{doing} … {time.monotonic() - begun:.0f} s")
-            if done.wait(PAUSE_S):
-                return
-
-    teller = threading.Thread(target=tell, daemon=True)
-    teller.start()
-    try:
-        yield
-    finally:
-        done.set()
-        teller.join()
-        line.wipe()
+    def _show(self, text: str) -> None:
+        """Overwrite the previous text of a terminal, cut at its width; elsewhere write a new line."""
+        if self._rewrites:
+            room = max(shutil.get_terminal_size().columns - 1, 10)
+            shown = text if len(text) <= room else f"{text[: room - 1]}…"
+            sys.stderr.write("\r" + shown.ljust(self._width))
+            self._width = len(shown)
+        else:
+            sys.stderr.write(text + "\n")
+        sys.stderr.flush()
 
 
 LATER: Final = "writing the computed results first; a second request stops at once"
@@ -232,43 +189,3 @@ def report_interrupt(stopped: KeyboardInterrupt, place: Path) -> int:
     print(f"\nskisnow: {'ended' if ended else 'interrupted'}; what is finished is kept in {place}.\n"
           "The same command goes on with it.", file=sys.stderr)  # fmt: skip
     return 143 if ended else 130
-
-
-STATUS: Final = 70  # exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h
-
-
-def report_failure(error: Exception) -> int:
-    """Write the traceback of an unforeseen error to a file and print its path; returns the exit status."""
-    reference = secrets.token_hex(4)
-    place = _write_log(f"error-{reference}.txt", _error_report(error, reference))
-    where = f"The trace is in {place}; please send it with what you did." if place else "The trace:"
-    what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
-    print(f"skisnow: an error that was not foreseen ({what}). Reference {reference}. {where}", file=sys.stderr)
-    if place is None:
-        traceback.print_exception(error)
-    return STATUS
-
-
-def _error_report(error: Exception, reference: str) -> str:
-    from importlib.metadata import version
-
-    head = (
-        f"reference {reference}, {datetime.now(UTC):%Y-%m-%d %H:%M:%S} UTC",
-        f"skisnow {version('skisnow')}, Python {platform.python_version()}, {platform.platform()}",
-        f"command {sys.argv}",
-    )
-    return "\n".join((*head, "", *traceback.format_exception(error)))
-
-
-def _write_log(name: str, text: str) -> Path | None:
-    """Write a file to the user's log folder or the temporary folder; returns its path, None if both fail."""
-    from platformdirs import user_log_path
-
-    for folder in (user_log_path("skisnow"), Path(tempfile.gettempdir())):
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / name).write_text(text, encoding="utf-8", errors="backslashreplace")
-        except OSError:
-            continue
-        return folder / name
-    return None

@@ -17,7 +17,6 @@ from .options import (
 )
 from .output import (
     Progress,
-    announced,
     ending_is_an_interrupt,
     prepare_output,
     print_json,
@@ -133,16 +132,15 @@ def _run_race(
     options: argparse.Namespace,
 ) -> tuple[QuickestLine, list[tuple[str, Score]], Run | None, tuple[Worth, ...]]:
     """Result of the search, scores and run by the scenario's method as in `_scores_by_method`, and variants' times."""
-    with announced("loading"):
-        from ..racing import compare_variants, drawn_for_race, quickest_line
-        from ..racing.search import require_cmaes
+    from ..racing import compare_variants, drawn_for_race, quickest_line
+    from ..racing.search import require_cmaes
 
-        if options.evaluations > 1:
-            require_cmaes()
-        scenario, variants = _scenario_and_variants(options)
-        snow = scenario.contact.snow
-        snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
-        begin = _read_start_line(options, scenario)
+    if options.evaluations > 1:
+        require_cmaes()
+    scenario, variants = _scenario_and_variants(options)
+    snow = scenario.contact.snow
+    snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
+    begin = _read_start_line(options, scenario)
     prepare_output(options.out)
     computing: dict[str, Any] = {"workers": options.workers}
     with Progress() as progress:

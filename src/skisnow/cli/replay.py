@@ -1,4 +1,4 @@
-"""``skisnow replay`` and ``serve``: a written run as a page that plays and as glTF models; the web lab."""
+"""``skisnow replay`` and ``serve``: a written run as a page that plays; the web lab."""
 
 from __future__ import annotations
 
@@ -7,29 +7,25 @@ import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .options import add_fall_line_azimuth, add_language, number, whole_number
-from .output import announced
 
 if TYPE_CHECKING:
     from ..replay import Replay, ReplayTrack
-
-LARGEST_FACTOR: Final = 20.0
 
 
 def add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add ``skisnow replay`` to the program."""
     parser = commands.add_parser(
         "replay",
-        help="a simulated run in three dimensions: a page that plays, glTF models",
-        description="Write replay.html of a run that was simulated with --out, a second run or a measured track beside "
-        "it, and the run or a moment of it as a glTF model.",
+        help="a simulated run in three dimensions: a page that plays",
+        description="Write replay.html of a run that was simulated with --out, with a second run or a measured track "
+        "beside it.",
     )
     parser.add_argument("folder", type=Path, metavar="RUN", help="the folder of a run, with its run.nc")
     parser.add_argument("other", type=Path, nargs="?", metavar="OTHER", help="a second run, as its ghost")
-    parser.add_argument("--ghost", "--over", dest="ghost", type=Path, metavar="RUN", help="the same")
     parser.add_argument("--track", type=Path, metavar="FILE", help="a measured track to compare with")
     add_fall_line_azimuth(parser, "for a track in latitude and longitude")
     parser.add_argument(
@@ -38,22 +34,6 @@ def add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         default=0.0,
         metavar="S",
         help="time of the run at the track's first point; default: 0",
-    )
-    parser.add_argument(
-        "--model", action="store_true", help="also write replay.glb, the run as a glTF model that moves"
-    )
-    parser.add_argument(
-        "--moment-s",
-        type=number("s", lowest=-36_000, highest=36_000),
-        metavar="S",
-        help="also write replay-S.SSs.glb, the moment nearest to S as a glTF model",
-    )
-    parser.add_argument(
-        "--exaggeration",
-        type=number("", lowest=1, highest=LARGEST_FACTOR),
-        default=1.0,
-        metavar="X",
-        help="bending and twist so many times in the models; default: 1",
     )
     parser.add_argument("--title", help="heading above it; default: the folder's name")
     add_language(parser, "the page")
@@ -65,20 +45,16 @@ def write_pages(options: argparse.Namespace) -> int:
     """Read a run and write its replay; print the paths of the files."""
     if options.track is None and (options.fall_line_azimuth_deg is not None or options.starts_at_s):
         options.parser.error("--fall-line-azimuth-deg and --starts-at-s place a track: name it with --track")
-    if options.other is not None and options.ghost is not None:
-        options.parser.error("one second run is shown: name it behind the first one or with --ghost")
     if options.out is not None and options.out.suffix.lower() == ".html":
         options.parser.error(f"--out names the folder of replay.html: write --out {options.out.parent}")
-    second = options.other or options.ghost
-    with announced(f"reading {options.folder}"):
-        from ..replay import replay_of_file
+    from ..replay import replay_of_file, write_replay
 
-        shown = replay_of_file(options.folder, title=options.title)
-        if options.track is not None:
-            shown = replay_of_file(options.folder, title=options.title, track=_beside(options, shown))
-        ghost = None if second is None else replay_of_file(second)
-    for place in _write_replay(options, shown, ghost):
-        print(place, flush=True)
+    shown = replay_of_file(options.folder, title=options.title)
+    if options.track is not None:
+        shown = replay_of_file(options.folder, title=options.title, track=_beside(options, shown))
+    ghost = None if options.other is None else replay_of_file(options.other)
+    folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
+    print(write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language))
     return 0
 
 
@@ -104,24 +80,6 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
             "contradiction", track=options.track
         )
     return measured_track(track, starts_at=options.starts_at_s)
-
-
-def _write_replay(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
-    from .._support.staging import write_file
-    from ..replay import moving_replay_model, replay_model, write_replay
-
-    folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
-    time, exaggeration = options.moment_s, options.exaggeration
-    with announced("writing"):
-        moment: dict[str, bytes] = {}
-        if time is not None:
-            moment[f"replay-{time:.2f}s.glb"] = replay_model(shown, time, exaggeration=exaggeration)
-        whole = {"replay.glb": moving_replay_model(shown, exaggeration=exaggeration)} if options.model else {}
-        written = [write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language)]
-        for name, content in (whole | moment).items():
-            write_file(folder / name, content)
-            written.append(folder / name)
-    return written
 
 
 def add_serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

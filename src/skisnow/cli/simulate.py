@@ -6,23 +6,20 @@ import argparse
 import sys
 import time
 import warnings
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._support.errors import ModelLimitWarning
 from .options import add_changes, add_language, add_workers, changes_of, number, scenario_of, seed_number, whole_number
-from .output import Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
+from .output import Progress, ending_is_an_interrupt, prepare_output, print_json, print_warnings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from ..scenario import Scenario, ScenarioFile
     from ..scenario.contact import Contact
     from ..simulation.run import Run
     from ..simulation.verification import Refinement
-
-LOADING = "loading"
 
 
 def add_simulate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -60,8 +57,7 @@ def simulate_scenario(options: argparse.Namespace) -> int:
         options.parser.error("name a scenario: a built-in one (--list names them) or a TOML file")
     if options.replay and options.out is None:
         options.parser.error("--replay writes into the folder of --out: name one")
-    with announced(LOADING):
-        scenario_input = scenario_of(options)
+    scenario_input = scenario_of(options)
     _prepare(options, scenario_input)
     with ending_is_an_interrupt() as ending:
         result, refinements = _simulate(scenario_input, verify=options.verify)
@@ -82,13 +78,11 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
 
 
 def _simulate(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
-    with ExitStack() as loading, Progress() as progress, warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
-        loading.enter_context(announced(LOADING))
-        from ..simulation.simulated_run import simulate
+    from ..simulation.simulated_run import simulate
 
-        result = simulate(scenario_input.scenario, progress=_Pace(progress, begun=loading.close))
-        loading.close()
+    with Progress() as progress, warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
+        result = simulate(scenario_input.scenario, progress=_Pace(progress))
         if not verify or result.outcome == "interrupted":
             return result, None
         return result, _verify(result, progress)
@@ -175,16 +169,14 @@ def _write_run(options: argparse.Namespace, result: Run, summary: dict[str, Any]
 class _Pace:
     """Progress callback of a simulation that prints simulated time, share, and the speed relative to real time."""
 
-    def __init__(self, progress: Progress, prefix: str = "", *, begun: Callable[[], object] = lambda: None) -> None:
+    def __init__(self, progress: Progress, prefix: str = "") -> None:
         self._progress = progress
         self._prefix = prefix
-        self._tell_begun = begun
         self._begun: tuple[float, float] | None = None
 
     def __call__(self, simulated_s: float, share: float) -> None:
         time_s = time.monotonic()
         if self._begun is None:
-            self._tell_begun()
             self._begun = (time_s, simulated_s)
         start, before = self._begun
         rate = (simulated_s - before) / max(time_s - start, 1e-9)
@@ -249,12 +241,11 @@ def _add_ensemble(parser: argparse.ArgumentParser) -> None:
 
 def simulate_turn(options: argparse.Namespace) -> int:
     """Analyse a campaign and simulate a turn on its snow; print sentences or JSON, and write the report."""
-    with announced("loading"):
-        from ..pipeline import turn
-        from ..scenario.identify_section import prior_of
+    from ..pipeline import turn
+    from ..scenario.identify_section import prior_of
 
-        priors = [prior_of(word) for word in options.priors]
-        scenario_input = scenario_of(options)
+    priors = [prior_of(word) for word in options.priors]
+    scenario_input = scenario_of(options)
     print_warnings(scenario_input.warnings)
     prepare_output(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")

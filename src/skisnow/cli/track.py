@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .._support.units import DEGREE
 from .options import add_fall_line_azimuth, add_language, number
-from .output import Progress, announced, prepare_output, print_json, print_warnings
+from .output import Progress, prepare_output, print_json, print_warnings
 
 if TYPE_CHECKING:
     from .._support.messages import Message
@@ -57,23 +57,17 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 def summarise(options: argparse.Namespace) -> int:
     """Read a track, print its summary, and write its report if a folder is given."""
     prepare_output(options.out)
-    if options.course is None:
-        course = None
-    else:
-        from ..track.course import read_course
+    from ..track.course import read_course
+    from ..track.read import read_track
 
-        course = read_course(options.course)
-    with announced(f"reading {options.file}"):
-        from ..track.read import read_track
+    course = None if options.course is None else read_course(options.course)
+    track = read_track(options.file, origin=None if course is None else _course_origin(course))
+    from ..simulation.run_summary import time_gates
+    from ..track.summary import summary_dict, track_summary
 
-        track = read_track(options.file, origin=None if course is None else _course_origin(course))
-    with announced(f"smoothing {len(track)} points"):
-        from ..simulation.run_summary import time_gates
-        from ..track.summary import summary_dict, track_summary
-
-        summary = track_summary(track, window=options.window_s, place_noise=options.noise_m)
-        values = summary_dict(summary)
-        result = None if course is None else time_gates(course, track)
+    summary = track_summary(track, window=options.window_s, place_noise=options.noise_m)
+    values = summary_dict(summary)
+    result = None if course is None else time_gates(course, track)
     if result is not None:
         from ..track.course.gates_table import gates_dict, time_warnings
 
@@ -202,27 +196,26 @@ def _compare_tracks(options: argparse.Namespace) -> tuple[Comparison, Message | 
 
     fit = _estimated_offsets(options)
     require_offsets(fit)
-    with announced("reading the tracks and finding nearest places"):
-        from ..comparison import compare_tracks
-        from ..report.summaries import read_compared, time_verdict
+    from ..comparison import compare_tracks
+    from ..report.summaries import read_compared, time_verdict
 
-        measured = read_compared(options.measured)
-        simulated = read_compared(options.simulated)
-        if simulated.origin is not None and measured.origin is not None:
-            simulated = simulated.at_origin(measured.origin)
-        angle = None if options.slope_angle_deg is None else options.slope_angle_deg * DEGREE
-        pairs = ((simulated, measured), (measured, simulated))
-        tracks = [_in_slope(track, options, other.slope_angle if angle is None else angle) for track, other in pairs]
-        time_from = options.time_from and options.time_from.replace("-", "_")
-        compared = compare_tracks(
-            *tracks,
-            fit=fit,
-            time_from=time_from,
-            from_above=options.from_above,
-            known_to=options.known_to_m,
-            slope_angle=angle if options.fall_line_azimuth_deg is None else None,
-        )
-        return compared, time_verdict(simulated, measured)
+    measured = read_compared(options.measured)
+    simulated = read_compared(options.simulated)
+    if simulated.origin is not None and measured.origin is not None:
+        simulated = simulated.at_origin(measured.origin)
+    angle = None if options.slope_angle_deg is None else options.slope_angle_deg * DEGREE
+    pairs = ((simulated, measured), (measured, simulated))
+    tracks = [_in_slope(track, options, other.slope_angle if angle is None else angle) for track, other in pairs]
+    time_from = options.time_from and options.time_from.replace("-", "_")
+    compared = compare_tracks(
+        *tracks,
+        fit=fit,
+        time_from=time_from,
+        from_above=options.from_above,
+        known_to=options.known_to_m,
+        slope_angle=angle if options.fall_line_azimuth_deg is None else None,
+    )
+    return compared, time_verdict(simulated, measured)
 
 
 def _estimated_offsets(options: argparse.Namespace) -> list[str]:

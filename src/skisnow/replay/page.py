@@ -17,13 +17,12 @@ import numpy.typing as npt
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from .._support.arrays import FloatArray, IntArray
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, require_language
 from .._support.messages import ENGLISH, translated, translations
 from .._support.staging import write_file
 from ..simulation.run import Run
 from .from_run import replay_of_run
-from .meshes import COLOURS, drawn_thickness
 from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
 from .run_file import replay_of_file
 from .skier import JOINTS, Part, skier_parts
@@ -156,6 +155,30 @@ _SKI_HISTORIES: Final = ("bending", "twist", "edge_depth", "force_per_length", "
 _Part = TypeVar("_Part", Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack)
 
 
+COLOURS: Final[dict[str, Any]] = {
+    # yellow, orange, red, purple, near black: darker throughout, distinct without red or green as well
+    "force": [[255, 233, 148], [253, 180, 83], [240, 105, 68], [190, 45, 92], [112, 20, 106], [45, 10, 70]],
+    "depth": [[170, 196, 219], [95, 144, 190], [38, 92, 150], [12, 42, 92]],
+    "unloaded": [214, 220, 226],
+    "side": [58, 66, 76],
+    "snow": [241, 245, 249],
+    "least_share": 0.002,
+}
+"""In sRGB, 0 to 255, each scale from nothing to the most; up to ``least_share`` of the most a ski is unloaded."""
+THICKEST, THINNEST = 0.018, 0.006
+"""Thickness (m) of a ski under the boot and at its ends: drawn, not computed with."""
+
+
+def drawn_thickness(station: FloatArray) -> FloatArray:
+    """Thickness (m) at stations (m), tip to tail: a core that thins to both ends.
+
+    >>> drawn_thickness(np.array([0.9, 0.0, -0.8])).round(4).tolist()
+    [0.006, 0.018, 0.006]
+    """
+    reach = np.where(station >= 0.0, station[0], -station[-1])
+    return np.asarray(THINNEST + (THICKEST - THINNEST) * (1.0 - np.minimum(1.0, np.abs(station) / reach) ** 1.5))
+
+
 def replay_bytes(replay: Replay) -> bytes:
     """Bytes of a replay as the page reads it: a header in JSON, then the arrays.
 
@@ -163,7 +186,7 @@ def replay_bytes(replay: Replay) -> bytes:
     groove.
     """
     arrays, described, at = [], {}, 0
-    for name, values in _arrays_by_name(thin_replay(replay)).items():
+    for name, values in _arrays_by_name(_thin_replay(replay)).items():
         content, description = _pack_array(*ARRAY_TYPES[name], values)
         described[name] = description | {"start": at}
         arrays.append(content)
@@ -173,18 +196,14 @@ def replay_bytes(replay: Replay) -> bytes:
     return b"".join([MAGIC, struct.pack("<I", len(header)), header, *arrays])
 
 
-def thin_replay(replay: Replay) -> Replay:
+def _thin_replay(replay: Replay) -> Replay:
     """Replay with at most `MOST_FRAMES_PER_SECOND` moments per second, including the first and the last."""
     number = len(replay.time)
     duration = float(replay.time[-1] - replay.time[0])
     step = max(1, round((number - 1) / max(duration * MOST_FRAMES_PER_SECOND, 1.0))) if number > 1 else 1
     if step == 1:
         return replay
-    return select_moments(replay, np.unique(np.append(np.arange(0, number, step), number - 1)))
-
-
-def select_moments(replay: Replay, moments: IntArray) -> Replay:
-    """Replay with only the moments of these indices, and the whole groove."""
+    moments = np.unique(np.append(np.arange(0, number, step), number - 1))
 
     def select(part: _Part, *names: str) -> _Part:
         return replace(part, **{name: getattr(part, name)[moments] for name in names})

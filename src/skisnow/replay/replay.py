@@ -6,17 +6,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
-from ..simulation.sledge_body import base_lateral, base_normal, rotation
 from ..track.track import Track
 
 FEWEST_POINTS: Final = 2
-SKI_NAMES: Final = ("left", "right")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -56,22 +53,6 @@ class ReplayTerrain:
     y: FloatArray
     height: FloatArray
     grade: tuple[float, float]
-
-    def heights(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
-        """Heights (m) of the drawn snow at places x, y (m)."""
-        (u, i, within_x), (v, j, within_y) = _cell(self.x, x), _cell(self.y, y)
-        below, above = ((1.0 - v) * self.height[k, j] + v * self.height[k, j + 1] for k in (i, i + 1))
-        near = (1.0 - u) * below + u * above
-        beyond_x, beyond_y = np.asarray(x, dtype=float) - within_x, np.asarray(y, dtype=float) - within_y
-        return np.asarray(near + self.grade[0] * beyond_x + self.grade[1] * beyond_y)
-
-
-def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Cell of each position on a rising grid: fraction within the cell, its index, and the position within the grid."""
-    within = np.clip(np.asarray(at, dtype=float), places[0], places[-1])
-    number = np.clip(np.searchsorted(places, within, side="right") - 1, 0, len(places) - 2)
-    share = (within - places[number]) / (places[number + 1] - places[number])
-    return share, number, within
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -197,42 +178,6 @@ class Replay:
     skier: ReplaySkier | None = None
 
 
-def ski_edges(replay: Replay, frame: int, *, exaggeration: float = 1.0) -> FloatArray:
-    """Both edges of both skis' bases in space (m): (ski, station, edge (0 left, 1 right), 3).
-
-    frame: index of the moment, 0 to n - 1.
-    exaggeration: factor of bending and twist.
-
-    With x ahead, l across the base to the left and n away from the snow, a ski's base at station s has its middle at
-    s x + (h + w) n from the boot and its edges at ± b/2 (cos φ l - sin φ n): h the unloaded base, w the bending, b the
-    width, φ the twist. Bending does not shorten the distances of stations.
-    """
-    skis = replay.skis
-    place, across, away, ahead = _boots(replay, frame)
-    twist = exaggeration * skis.twist[frame][..., None]
-    height = skis.base_height + exaggeration * skis.bending[frame]
-    middle = place[:, None, :] + skis.station[:, None] * ahead[:, None] + height[..., None] * away[:, None]
-    half = skis.half_width[:, None] * (np.cos(twist) * across[:, None] - np.sin(twist) * away[:, None])
-    return np.stack([middle + half, middle - half], axis=2)
-
-
-def _boots(replay: Replay, frame: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Place of each boot (2, 3) in space (m), and its axes across the base to the left, off it, and ahead."""
-    skis = replay.skis
-    if skis.boots is not None:
-        axes = np.stack([rotation(quaternion).T for quaternion in skis.boots.attitude[frame]])
-        return skis.boots.place[frame], axes[:, 1], axes[:, 2], axes[:, 0]
-    turn = rotation(replay.attitude[frame])
-    own = (base_lateral(skis.edge_angle), base_normal(skis.edge_angle), np.array([1.0, 0.0, 0.0]))
-    across, away, ahead = (np.broadcast_to(turn @ axis, (len(skis.middle), 3)) for axis in own)
-    return replay.place[frame] + skis.middle @ turn.T, across, away, ahead
-
-
-def nearest_frame(replay: Replay, time: float) -> int:
-    """Index of the moment nearest to a time (s)."""
-    return int(np.argmin(np.abs(replay.time - time)))
-
-
 _NEIGHBOURS: Final = 2
 
 
@@ -282,15 +227,11 @@ def quaternions(matrices: FloatArray) -> FloatArray:
     """
     if not len(matrices):
         return np.zeros((0, 4))
-    return without_sign_jumps(np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1))
+    turns = np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1)
+    turned = np.sum(turns[1:] * turns[:-1], axis=1) < 0.0
+    return np.asarray(turns * np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))[:, None])
 
 
 def rotation_of(quaternion: FloatArray) -> Rotation:
     """Rotations by unit quaternions w, x, y, z, shape (4,) or (n, 4)."""
     return Rotation.from_quat(np.roll(quaternion, -1, axis=-1))
-
-
-def without_sign_jumps(turns: FloatArray) -> FloatArray:
-    """The same rotations (n, 4) with signs such that consecutive quaternions are not opposite."""
-    turned = np.sum(turns[1:] * turns[:-1], axis=1) < 0.0
-    return np.asarray(turns * np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))[:, None])

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, IntArray
 from .._support.units import DEGREE
 from ..skier.anthropometry import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM, Segment
-from .meshes import Mesh, linear_light
-from .replay import Replay, ReplaySkier, quaternions, rotation_of
+from .replay import Replay, rotation_of
 
 SIDED: Final = ("ankle", "knee", "hip", "shoulder", "elbow", "hand", "pole tip")
 JOINTS: Final = ("pelvis", "neck", "head", *(f"{side} {name}" for side in ("left", "right") for name in SIDED))
@@ -167,6 +167,15 @@ Ring: TypeAlias = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """Vertices (v, 3) in m, their colours (v, 3) in linear light, triangles (t, 3) of their numbers."""
+
+    vertices: FloatArray
+    colours: FloatArray
+    pieces: IntArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Part:
     """A drawn part of the skier's body.
 
@@ -268,6 +277,12 @@ def _ball(middle: tuple[float, float, float], half: tuple[float, float, float], 
     return Mesh(mesh.vertices + np.array(middle), mesh.colours, mesh.pieces)
 
 
+def linear_light(colour: npt.ArrayLike) -> FloatArray:
+    """Linear light, 0 to 1, of an sRGB colour, 0 to 255 (IEC 61966-2-1)."""
+    part = np.asarray(colour, dtype=float) / 255.0
+    return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+
+
 def _join_meshes(meshes: Sequence[Mesh]) -> Mesh:
     first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     return Mesh(
@@ -275,16 +290,6 @@ def _join_meshes(meshes: Sequence[Mesh]) -> Mesh:
         np.concatenate([mesh.colours for mesh in meshes]),
         np.concatenate([mesh.pieces + start for mesh, start in zip(meshes, first, strict=True)]),
     )
-
-
-def part_poses(skier: ReplaySkier, part: Part) -> tuple[FloatArray, FloatArray]:
-    """Origin (n, 3) and unit quaternion w, x, y, z (n, 4) of a part between joints, in the frame of the joints."""
-    start, end = (skier.joints[:, JOINTS.index(joint)] for joint in (part.start, part.end))
-    z = end - start
-    z = z / np.linalg.norm(z, axis=1, keepdims=True)
-    y = np.array([0.0, 1.0, 0.0]) - z[:, 1:2] * z
-    y = y / np.maximum(np.linalg.norm(y, axis=1, keepdims=True), 1e-9)
-    return start, quaternions(np.stack([np.cross(y, z), y, z], axis=2))
 
 
 _TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -329,21 +334,3 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
 def _cardan(matrices: FloatArray) -> FloatArray:
     """Angles (3, n) (degrees) of rotation matrices (n, 3, 3) about z, the rotated x and the rotated y."""
     return np.asarray(Rotation.from_matrix(matrices).as_euler("ZXY", degrees=True).T)
-
-
-def skier_mesh(replay: Replay, frame: int) -> Mesh:
-    """Mesh of the skier of a replay at a moment, in space."""
-    skier, boots = replay.skier, replay.skis.boots
-    assert skier is not None
-    assert boots is not None
-    body = rotation_of(replay.attitude[frame])
-    placed = []
-    for part in skier_parts(skier.height):
-        if part.start in JOINTS:
-            start, turn = (pose[frame] for pose in part_poses(skier, part))
-            vertices = replay.place[frame] + body.apply(start + rotation_of(turn).apply(part.mesh.vertices))
-        else:
-            side = ("left boot", "right boot").index(part.start)
-            vertices = boots.place[frame, side] + rotation_of(boots.attitude[frame, side]).apply(part.mesh.vertices)
-        placed.append(Mesh(vertices, part.mesh.colours, part.mesh.pieces))
-    return _join_meshes(placed)

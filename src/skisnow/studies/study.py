@@ -14,9 +14,8 @@ from .._support.processes.kept_rows import Row
 from .._support.units import Facts, Shown
 from .._support.user_files import is_file, read_toml
 from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
-from .points import Axis, Point, Points, grid_points, hypercube_points
+from .points import Axis, Point, grid_points, hypercube_points
 from .subjects import CarveModel, ScenarioModel
-from .table import WRITERS
 
 FORMS: Final = ("grid", "latin_hypercube")
 OWN_KEYS: Final[Mapping[str, tuple[str, ...]]] = {"grid": (), "latin_hypercube": ("n", "seed")}
@@ -73,7 +72,7 @@ class Study(Shown):
     varied
         Names of the inputs that vary, in the order of the file: the last varies fastest.
     points
-        Inputs of every point: a list of them, or a function from the number of a point.
+        Inputs of every point.
 
     See Also
     --------
@@ -103,7 +102,11 @@ class Study(Shown):
 
     def place_for_previous(self) -> Path:
         """Free path to which another study's table is moved, if it is at the path of this one's table."""
-        return place_for_previous(self.out)
+        place, count = self.out.with_name(f"{self.out.stem}.previous{self.out.suffix}"), 1
+        while place.exists():
+            count += 1
+            place = self.out.with_name(f"{self.out.stem}.previous-{count}{self.out.suffix}")
+        return place
 
     def fingerprint(self) -> str:
         """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""
@@ -113,15 +116,6 @@ class Study(Shown):
         for path in self.subject.files(self.points):
             digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]
-
-
-def place_for_previous(out: Path) -> Path:
-    """Free path in the same folder to which another study's table at `out` is moved."""
-    place, count = out.with_name(f"{out.stem}.previous{out.suffix}"), 1
-    while place.exists():
-        count += 1
-        place = out.with_name(f"{out.stem}.previous-{count}{out.suffix}")
-    return place
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,7 +182,6 @@ def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
         raise ParameterError("[{form}] contains no varied input; write one, such as edge_angle_deg = [30, 45, 60]").tag(
             "missing", form=form
         )
-    points: Points
     if form == "grid":
         points = grid_points(axes, fixed)
     else:
@@ -265,8 +258,6 @@ def _table_path(path: Path, values: Mapping[str, Any]) -> Path:
         raise ParameterError('out is {out!r}; it is the place of the table, such as out = "table.csv"').tag(
             "wrong_kind", out=out
         )
-    if Path(out).suffix.lower() not in WRITERS:
-        raise ParameterError("out is {out!r}; the name of the table must end in {writers}").tag(
-            "wrong_ending", out=out, writers=list(WRITERS)
-        )
+    if Path(out).suffix.lower() != ".csv":
+        raise ParameterError("out is {out!r}; the name of the table must end in .csv").tag("wrong_ending", out=out)
     return path.parent / out

@@ -25,7 +25,7 @@ from ..simulation.run_summary import end_dict, energies_dict, least_turn_radius,
 from ..ski.beam import CLAMP_LENGTH
 from ..ski.ski_file import Sources
 from ..snow.properties import require_stress
-from .points import Point, distinct_values
+from .points import Point
 from .table import FAILED
 
 CARVE_RESULTS: Final = (
@@ -45,6 +45,11 @@ RUN_RESULTS: Final = (
 """Columns behind the keys; `outcome` is "error" where a run could not be asked for, and `reason` says why."""
 MOST_TRIED: Final = 100
 """Points that are tried, before anything is computed, for one that can be asked (assumption: milliseconds each)."""
+
+
+def _distinct_values(points: Sequence[Point], name: str) -> list[Any]:
+    """Distinct values of an input, in the order of the points."""
+    return list(dict.fromkeys(point[name] for point in points if name in point))
 
 
 class _PointModel(ShownFields):
@@ -91,7 +96,7 @@ class CarveModel(_PointModel):
 
     def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         """Raise an error if an input is missing, the snow is named twice, or a fixed ski or snow cannot be read."""
-        carves = distinct_values(points, "at_rest") != [True]
+        carves = _distinct_values(points, "at_rest") != [True]
         point = next(point for point in points if not (carves and point.get("at_rest") is True))
         require_complete(point)
         # the snow that all points share must be there, with S_f from one side and not from both
@@ -105,9 +110,9 @@ class CarveModel(_PointModel):
 
     def files(self, points: Sequence[Point]) -> list[Path]:
         """Ski files and results files."""
-        skis = (self._sources.ski_file(word) for word in distinct_values(points, "ski"))
+        skis = (self._sources.ski_file(word) for word in _distinct_values(points, "ski"))
         return [path for path in skis if path] + [
-            self._sources.path(word) for word in distinct_values(points, "results")
+            self._sources.path(word) for word in _distinct_values(points, "results")
         ]
 
     def _compute_row(self, point: Point) -> Row:
@@ -175,7 +180,7 @@ class ScenarioModel(_PointModel):
     def files(self, points: Sequence[Point]) -> list[Path]:
         """The scenario's file, and every file that it or a point names."""
         own = input_files(self._base) if self._base.file else (scenario_place(self.scenario), *input_files(self._base))
-        named = {word for name in PATH_KEYS for word in distinct_values(points, name)}
+        named = {word for name in PATH_KEYS for word in _distinct_values(points, name)}
         return [*own, *(self.folder / word for word in sorted(named))]
 
     def _compute_row(self, point: Point) -> Row:

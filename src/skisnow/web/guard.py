@@ -9,10 +9,7 @@ from __future__ import annotations
 import asyncio
 import hmac
 import ipaddress
-import math
 import socket
-import time
-from collections import OrderedDict, deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from html import escape
@@ -126,7 +123,6 @@ class Guard:
     def __init__(self, app: ASGIApp, access: Access) -> None:
         self.app = app
         self.access = access
-        self.tries = Tries()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer, reject or pass on a request."""
@@ -165,9 +161,6 @@ class Guard:
 
     async def _token_answer(self, scope: Scope, receive: Receive) -> Response:
         if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
-            wait_s = self.tries.wait_s((scope.get("client") or ("",))[0])
-            if wait_s > 0:
-                return too_many_tries(scope, wait_s)
             return await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
         return token_page(scope, 401)
 
@@ -205,9 +198,6 @@ def _limit_body(receive: Receive, most_bytes: int) -> Receive:
 TOKEN_PATH: Final = "/token"
 _LONGEST: Final = 2000
 _WAIT_S: Final = 0.5  # delay after a wrong token (s) against guessing
-TRIES: Final = 10
-WITHIN_S: Final = 60.0  # period (s) for `TRIES` attempts of one address
-_MOST_ADDRESSES: Final = 10_000
 
 _PAGE: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{token} · skisnow</title>
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -221,35 +211,6 @@ border:2px solid #333;border-radius:6px}}button{{background:#0b4f8a;color:#fff;b
 <button>{open}</button></form></main></html>"""
 
 
-class Tries:
-    """Attempts of the last minute by address, including those with the right token."""
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._now = clock
-        self._of = OrderedDict[str, deque[float]]()
-
-    def wait_s(self, address: str) -> float:
-        """Count an attempt; returns the time that its address must wait (s), 0 if the attempt is allowed."""
-        time_s, times = self._now(), self._of.setdefault(_network(address), deque())
-        self._of.move_to_end(_network(address))
-        while len(self._of) > _MOST_ADDRESSES:
-            self._of.popitem(last=False)
-        while times and times[0] <= time_s - WITHIN_S:
-            times.popleft()
-        if len(times) >= TRIES:
-            return times[0] + WITHIN_S - time_s
-        times.append(time_s)
-        return 0.0
-
-
-def _network(address: str) -> str:
-    """Address without the host part of IPv6: one person can have all addresses of a /64 network."""
-    parsed = _ip_address(address)
-    if parsed is None or parsed.version == 4:
-        return address
-    return str(ipaddress.ip_network((int(parsed) >> 64 << 64, 64)))
-
-
 def token_page(
     scope: Scope, status: int, sentence: str = Message("The lab requires the token that it was started with.")
 ) -> Response:
@@ -259,17 +220,6 @@ def token_page(
     words = {name: escape(translated(text, language)) for name, text in shown.items()}
     page = _PAGE.format(language=language, path=TOKEN_PATH, **words)
     return HTMLResponse(page, status, headers={"cache-control": "no-store"})
-
-
-def too_many_tries(scope: Scope, wait_s: float) -> Response:
-    """Page with the form and the time to wait."""
-    seconds = math.ceil(wait_s)
-    sentence = Message(
-        "Those were {tries} tries in a minute. Wait {seconds} seconds, then try again.", tries=TRIES, seconds=seconds
-    )
-    answer = token_page(scope, 429, sentence)
-    answer.headers["retry-after"] = str(seconds)
-    return answer
 
 
 async def answer_to_token(

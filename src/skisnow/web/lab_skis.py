@@ -16,7 +16,7 @@ from ..ski import Ski, read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
 from .settings import Limits
-from .uploads import SKI_BOUNDS, Unpacking, confined
+from .uploads import Unpacking, in_other_process
 from .words import replaced, typed_number
 
 FOLDER: Final = "skis"
@@ -190,14 +190,11 @@ class SkiTexts(NamedTuple):
 
 def measured_text(name: str, typed: Mapping[str, str]) -> str:
     """Text of the file of a ski with three measured widths. Raises ParameterError: a field is empty or not a number."""
-    return _toml({NAME: name, "source": "measured, entered in the lab"}, {key: typed.get(key, "") for key in MEASURED})
-
-
-def _toml(texts: Mapping[str, str], typed: Mapping[str, str]) -> str:
-    values: dict[str, Any] = dict(texts)
-    for key, text in typed.items():
+    values: dict[str, Any] = {NAME: name, "source": "measured, entered in the lab"}
+    for key, words in MEASURED.items():
+        text = typed.get(key, "")
         if text.strip() or key not in OPTIONAL:
-            values[key] = (_numbers if key in LISTS else typed_number)(MEASURED[key], text)
+            values[key] = (_numbers if key in LISTS else typed_number)(words, text)
     return "".join(f"{key} = {toml_text(value)}\n" for key, value in values.items())
 
 
@@ -219,25 +216,21 @@ def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], limits: Limits) -> 
         for name, content in uploads:
             unpacking.take(PurePosixPath(name.replace("\\", "/")).name, content)
         names = sorted(path.name for path in unpacking.folder.iterdir())
-        return confined(SKI_BOUNDS, read_ski_files, str(unpacking.folder), names)
+        return in_other_process(read_ski_files, str(unpacking.folder), names)
 
 
 def read_ski_files(folder: str, names: Sequence[str]) -> SkiTexts:
     """Read the ski from a folder of `ski_of_uploads`."""
     files = [name for name in names if name.lower().endswith(".toml")]
-    if len(files) == 1:
-        place = Path(folder) / files[0]
-        _require_own_files(place, names)
-    elif not files and names:
+    if len(files) != 1:
         raise ParameterError(
-            "a table alone states neither length nor mass of a ski; choose it together with a .toml file that names "
-            "it (table = '{table}'): “Download the file” on the page gives one to begin with"
-        ).tag("table_alone", table=names[0])
-    else:
-        raise ParameterError("choose one ski: its .toml file with the table that it names").tag("not_one_ski")
+            "choose one ski: its .toml file with the table that it names. “Download the file” on the page gives a "
+            "file to begin with"
+        ).tag("not_one_ski")
+    place = Path(folder) / files[0]
+    _require_own_files(place, names)
     ski, _ = _read_in_folder(place)
-    is_whole = len(names) == 1 and files
-    text, table = (place.read_text(encoding="utf-8-sig"), "") if is_whole else texts_of_ski(ski)
+    text, table = (place.read_text(encoding="utf-8-sig"), "") if len(names) == 1 else texts_of_ski(ski)
     return SkiTexts(ski.name, text, table)
 
 

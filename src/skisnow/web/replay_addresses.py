@@ -1,4 +1,4 @@
-"""Addresses of the replay: scripts, data of runs, models, pages, and upload of measured tracks."""
+"""Addresses of the replay: scripts, data of runs, pages, and upload of measured tracks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import ENGLISH, Message, joined, translations
 from .._support.user_files import ContentError, read_json, read_record
-from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, replay_bytes, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
@@ -29,7 +28,7 @@ from .elements import plain_page
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
 from .page_requests import add_upload, address, newest_first, uploaded_files
 from .runs import JOB, Job
-from .uploads import BOUNDS, confined
+from .uploads import in_other_process
 from .words import language_of_request
 
 LIST: Final = "/replay"
@@ -38,14 +37,11 @@ GATES: Final = f"{LIST}/gates"
 TURNS: Final = f"{LIST}/turns"
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
-MODEL: Final = f"{LIST}/model"
-MOVING_MODEL: Final = f"{LIST}/moving-model"
 FIRST: Final = f"{LIST}/first"
 FIRST_SCRIPT: Final = "/first.js"
 FIRST_FILE: Final = Path(__file__).with_name("first_replay.bin.gz")
 """Replay of the first page, which build_backend/write_first_replay.py writes."""
 _TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
-_LARGEST_FACTOR: Final = 20.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +80,7 @@ class RunFolders:
         if not track:
             return alone
         tracks = TrackFolders(self.folder)
-        beside = tracks.beside(track, alone, read=lambda *what: confined(BOUNDS, track_on_slope, *what))
+        beside = tracks.beside(track, alone, read=lambda *what: in_other_process(track_on_slope, *what))
         return replay_of_file(place, title=title, ski=ski, track=beside)
 
 
@@ -109,14 +105,6 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         content = replay_bytes(in_language(runs.replay(name, track), language_of_request(request)))
         return Response(content, media_type="application/octet-stream", headers={"cache-control": "no-cache"})
 
-    def model(name: str, time: float = 0.0, exaggeration: float = 1.0) -> Response:
-        content = replay_model(runs.replay(name), time, exaggeration=_limit_exaggeration(exaggeration))
-        return _model_file(content, f"{name}-{time:.2f}s")
-
-    def moving_model(name: str, exaggeration: float = 1.0) -> Response:
-        content = moving_replay_model(runs.replay(name), exaggeration=_limit_exaggeration(exaggeration))
-        return _model_file(content, name)
-
     def first() -> Response:
         headers = {"content-encoding": "gzip", "cache-control": "no-cache"}
         return Response(FIRST_FILE.read_bytes(), media_type="application/octet-stream", headers=headers)
@@ -125,8 +113,6 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     _add_route(app, FIRST, first)
     _add_route(app, f"{FILES}/{{name}}", program_file)
     _add_route(app, f"{DATA}/{{name}}", data)
-    _add_route(app, f"{MODEL}/{{name}}.glb", model)
-    _add_route(app, f"{MOVING_MODEL}/{{name}}.glb", moving_model)
     _add_tables(app, runs)
 
 
@@ -137,18 +123,19 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         folders, titles = map(runs.folder_of, (run, ghost)), (runs.title(run), runs.title(ghost))
         work = partial(page_of_folders, names=titles, back=LIST)
-        return HTMLResponse(confined(BOUNDS, work, *folders, language_of_request(request)))
+        return HTMLResponse(in_other_process(work, *folders, language_of_request(request)))
 
     def turns(request: Request, track: str, other: str = "") -> Response:
         files = map(tracks.file, (track, other) if other else (track,))
         named = [part for path, placing in files for part in (path, placing.called)]
         work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
-        return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
+        return HTMLResponse(in_other_process(work, *named, language_of_request(request)))
 
     def turns_table(request: Request, track: str) -> Response:  # noqa: ARG001 -- of an error page
         path, placing = tracks.file(track)
-        text = confined(BOUNDS, turns_of_track, path, placing.called)
-        return _download(text, f"{track}-{TURNS_FILE}", "text/csv")
+        text = in_other_process(turns_of_track, path, placing.called)
+        named = f"attachment; filename*=UTF-8''{quote(f'{track}-{TURNS_FILE}', safe='')}"
+        return Response(text, media_type="text/csv", headers={"content-disposition": named})
 
     _add_route(app, GATES, gates, is_page=True)
     _add_route(app, TURNS, turns, is_page=True)
@@ -173,20 +160,6 @@ def _add_route(app: FastAPI, place: str, answer: Callable[..., Response], *, is_
     app.add_api_route(place, answered, include_in_schema=False, response_model=None)
 
 
-def _limit_exaggeration(exaggeration: float) -> float:
-    """Nearest exaggeration of the page's slider; 1 for NaN."""
-    return min(max(1.0, exaggeration), _LARGEST_FACTOR)  # in this order: of 1 and nan the first is taken
-
-
-def _model_file(content: bytes, name: str) -> Response:
-    return _download(content, f"{name}.glb", "model/gltf-binary")
-
-
-def _download(content: bytes | str, name: str, media_type: str) -> Response:
-    named = f"attachment; filename*=UTF-8''{quote(name, safe='')}"
-    return Response(content, media_type=media_type, headers={"content-disposition": named})
-
-
 def program_file(name: str) -> Response:
     """Answer with a script or style sheet of the replay; other files of the package are rejected."""
     if name not in (*MODULES, STYLE):
@@ -209,8 +182,6 @@ def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGL
         list=LIST,
         run=address(f"{DATA}/{quote(run)}", track=track),
         ghost=f"{DATA}/{quote(ghost)}" if ghost else "",
-        model=f"{MODEL}/{quote(run)}.glb",
-        moving_model=f"{MOVING_MODEL}/{quote(run)}.glb",
     )
 
 
@@ -230,7 +201,7 @@ def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
         azimuth = number_of(str(form.get("azimuth", "")), Message("the direction of the fall line"))
         start = number_of(str(form.get("start", "")), Message("the time at the first point"))
         placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)
-        name = tracks.keep(upload.file, placing, check=lambda *what: confined(BOUNDS, check_track, *what))
+        name = tracks.keep(upload.file, placing, check=lambda *what: in_other_process(check_track, *what))
         return address(LIST, track=name)
 
     add_upload(app, TRACK_UPLOAD, store, max_fields=4)

@@ -1,19 +1,16 @@
-"""The lab as an ASGI application, and its server: sockets, addresses, and time limits for slow connections."""
+"""The lab as an ASGI application, and its server: sockets and addresses."""
 
 from __future__ import annotations
 
-import asyncio
-import inspect
 import io
 import ipaddress
-import logging
 import socket
 import ssl
 from dataclasses import dataclass
-from functools import partial, wraps
+from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final
 
 import ifaddr
 import segno
@@ -26,7 +23,7 @@ from starlette.responses import FileResponse, RedirectResponse, Response
 from .._support.environment import load_certificate
 from .._support.errors import ParameterError
 from .._support.messages import languages
-from .elements import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to
+from .elements import KEEPING, LANGUAGE, SCRIPT, STYLES, add_error_pages, log_to
 from .guard import Access, Guard, is_loopback
 from .pages import INNER, PAGES
 from .replay_addresses import FIRST_SCRIPT
@@ -39,11 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from starlette.types import ASGIApp
-    from uvicorn.protocols.http.h11_impl import H11Protocol as _Protocol
 
     from .settings import Lab
-else:
-    from uvicorn.protocols.http.auto import AutoHTTPProtocol as _Protocol
 
 
 def require_allowed(host: str, token: str | None) -> None:
@@ -105,7 +99,6 @@ def serve(
             server_header=False,
             ws_max_size=4_000_000,
             ws_ping_interval=None,  # the sockets of the pages have a heartbeat with a longer limit
-            http=TimeLimitedProtocol,
             lifespan="on",
             ssl_certfile=None if certificate is None else certificate.file,
             ssl_keyfile=None if certificate is None else certificate.key,
@@ -183,66 +176,6 @@ def lines_for_others(addresses: list[str], *, secure: bool) -> Iterator[str]:
     yield ENCRYPTED if secure else IN_CLEAR
 
 
-HEAD_S: Final = 20.0  # maximum time for the head of a request (s), from the connection or the first byte
-BODY_S: Final = 120.0  # maximum time for the next part of a body (s)
-HEAD_BYTES: Final = 65_536
-
-
-class TimeLimitedProtocol(_Protocol):
-    """HTTP protocol that closes slow connections; its limits are attributes, so that tests can shorten them."""
-
-    head_s = HEAD_S
-    body_s = BODY_S
-
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self._closing: asyncio.TimerHandle | None = None
-        self._head_bytes = 0
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Start the time limit of a request."""
-        super().connection_made(cast("asyncio.Transport", transport))
-        self._limit_time(self.head_s)
-
-    def data_received(self, data: bytes) -> None:
-        """Restart the time limit for a new request or a part of a body."""
-        was_waiting = self._is_waiting()
-        super().data_received(data)
-        if self.transport.get_protocol() is not self:  # the connection became a web socket
-            self._limit_time(None)
-        elif not self._is_waiting():
-            self._head_bytes = 0
-            self._limit_time(self.body_s if self.cycle.more_body else None)
-        else:
-            self._head_bytes += len(data)
-            if self._head_bytes > HEAD_BYTES:
-                self.transport.close()
-            elif not was_waiting or self._closing is None:
-                self._limit_time(self.head_s)
-
-    def on_response_complete(self) -> None:
-        """Start the time limit of the next request on this connection."""
-        super().on_response_complete()
-        if not self.transport.is_closing():
-            self._limit_time(self.head_s)
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Stop the time limit."""
-        self._limit_time(None)
-        super().connection_lost(exc)
-
-    def _is_waiting(self) -> bool:
-        """True if no request is being received or answered."""
-        # None until the first request, unlike its type
-        return self.cycle is None or bool(self.cycle.response_complete)  # type: ignore[redundant-expr]
-
-    def _limit_time(self, seconds: float | None) -> None:
-        if self._closing is not None:
-            self._closing.cancel()
-        loop = asyncio.get_running_loop()
-        self._closing = None if seconds is None else loop.call_later(seconds, self.transport.close)
-
-
 LOG_FILE: Final = "lab.log"
 KEPT_S: Final = 365 * 24 * 3600
 _HERE: Final = Path(__file__).parent
@@ -273,7 +206,6 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
         reconnect_timeout=RECONNECT_S,
     )
     pages_app.on_startup(set_heartbeat)
-    log_socket_errors()
     pages_app.config.socket_io_js_transports = ["websocket"]
     # the bar has no accessible name; the page shows the status
     pages_app.config.quasar_config["loadingBar"] = {"skipHijack": True}
@@ -292,49 +224,6 @@ def _set_language(code: str, back: str = "/") -> Response:
 def _asset_response(place: str) -> FileResponse:
     kind = "text/css" if place == STYLES else "text/javascript"
     return FileResponse(_HERE / place.removeprefix("/"), media_type=kind, headers={"cache-control": "no-cache"})
-
-
-_LIBRARIES: Final = ("engineio.server", "socketio.server")
-
-
-def log_socket_errors() -> None:
-    """Catch the errors of the framework's socket handlers, and log those of its libraries in single lines."""
-    handlers: dict[str, Callable[..., Any]] = core.sio.handlers["/"]
-    for name, handler in handlers.items():
-        if not hasattr(handler, "__wrapped__"):
-            handlers[name] = _without_errors(name, handler)
-    for library in _LIBRARIES:
-        logger = logging.getLogger(library)
-        logger.handlers = [_OneLine()]
-        logger.propagate = False
-
-
-def _without_errors(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a socket handler: malformed messages are logged instead of raised; pages catch their own errors."""
-
-    @wraps(handler)
-    async def answered(*arguments: Any) -> Any:
-        try:
-            answer = handler(*arguments)
-            return await answer if inspect.isawaitable(answer) else answer
-        except Exception as error:  # any message of a stranger
-            if type(error).__module__ == "socketio.exceptions":  # a rejection that its page waits for
-                raise
-            LOG.info("a socket sent a malformed %s (%s)", name, type(error).__name__)
-        if name == "connect":
-            raise ConnectionRefusedError
-        return None
-
-    return answered
-
-
-class _OneLine(logging.Handler):
-    """Log handler that writes messages of a library to the lab's log in one line."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        kind = record.exc_info[0].__name__ if record.exc_info and record.exc_info[0] else ""
-        said = " ".join(record.getMessage().split())[:200]
-        LOG.info("%s: %s %s", record.name, said, kind)
 
 
 def set_heartbeat() -> None:

@@ -44,11 +44,6 @@ class Studies(Runs):
     def __init__(self, folder: Path) -> None:
         super().__init__(folder / FOLDER)
 
-    @property
-    def workers(self) -> int:
-        """Number of processes for a study: a core stays free for the pages."""
-        return max(1, available_cores() - 1)
-
     def ask_for(self, question: StudyQuestion, language: str = ENGLISH) -> Job:
         """Store a study at the end of the queue; ``language``: language of its map.
 
@@ -66,7 +61,7 @@ class Studies(Runs):
                 if points > MOST_POINTS:
                     raise ParameterError(
                         "the study has {points} points; the lab accepts at most {most}. Use fewer values, or the "
-                        "command skisnow study, which accepts a million"
+                        "command skisnow study, which accepts 100,000"
                     ).tag("too_many_points", points=points, most=MOST_POINTS)
             except ParameterError as error:
                 raise ParameterError(_without_folder(made, error.message)).tag(error.code) from error
@@ -114,8 +109,9 @@ class Studies(Runs):
 
     def _command(self, job: Job) -> list[str]:
         folder = self.folder / job.name
+        workers = str(max(1, available_cores() - 1))  # a core stays free for the pages
         figure = ["--language", job.language, "--figure", str(folder / FIGURE)] if job.scenario == CARVE else []
-        return ["study", str(folder / STUDY), "--workers", str(self.workers), *figure]
+        return ["study", str(folder / STUDY), "--workers", workers, *figure]
 
     async def _ended_as(self, job: Job, last: str, *, cancelled: bool) -> Job:
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)

@@ -30,6 +30,7 @@ from .field import _campaign
 from .motion import run_files
 from .scenario import _SKI_TABLE, _WITH_TABLE
 
+_WITH_SHAPE = b'shape = "ski-def.json"\nmass_kg = 2\nEI_N_m2 = [100, 440, 100]\nGJ_N_m2 = [60, 175, 60]\n'
 _LIMITS = Limits(upload_bytes=10_000_000, unpacked_bytes=20_000_000, files=50)
 _TRACK = b"time_s,x_m,y_m,z_m\n" + b"".join(b"%.1f,%d,0.5,0\n" % (0.1 * i, i) for i in range(12))
 

@@ -41,7 +41,6 @@ NO_READERS: Final[Mapping[str, str]] = {
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
     "campaign.store.export:_add_later_files": "a file of the campaign that it has just exported",
     "campaign.store.engine:_find_damage": "a store that is known to be damaged, for the integrity check",
-    "studies.table:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
     "web.lab_skis:texts_of_ski": "the file that it has just written",
     "web.transfer:FileImports.name": "the name that it has just written",

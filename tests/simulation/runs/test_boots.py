@@ -11,13 +11,14 @@ import pytest
 import skisnow
 from skisnow import BootMoment, BootPose, Boots, Scenario, load_scenario, simulate
 from skisnow._support.errors import ParameterError
-from skisnow.replay import replay_of_run, ski_edges
+from skisnow.replay import replay_of_run
 from skisnow.scenario import Plane
 from skisnow.scenario.boots import read_boots
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_tables import boots_text, write_boots
 from tests.coded import raises
 from tests.present import present
+from tests.replay.held import ski_edges
 
 
 def turn(**changes: object) -> Scenario:

@@ -27,7 +27,6 @@ import httpx
 from fastapi import FastAPI
 
 from skisnow._support.errors import ParameterError
-from skisnow.replay import moving_replay_model, replay_model, replay_of_file
 from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
@@ -83,21 +82,10 @@ def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: 
     assert client.get("/replay/show", params={"run": "older", "ghost": name or "?"}).status_code == 404
     escaped = name.replace("/", "%2F") or "%20"
     assert client.get(f"/replay/data/{escaped}").status_code == 404
-    assert client.get(f"/replay/model/{escaped}.glb").status_code == 404
-    assert client.get(f"/replay/moving-model/{escaped}.glb").status_code == 404
-
-
-@pytest.mark.parametrize(("asked", "given"), [("nan", 1.0), ("-3", 1.0), ("inf", 20.0), ("1e9", 20.0)])
-def test_an_unknown_exaggeration_becomes_the_nearest(runs: Path, client: Client, asked: str, given: float) -> None:
-    replay = replay_of_file(runs / "older", title="older")
-    answer = client.get("/replay/moving-model/older.glb", params={"exaggeration": asked})
-    assert answer.content == moving_replay_model(replay, exaggeration=given)
-    answer = client.get("/replay/model/older.glb", params={"time": "1.0", "exaggeration": asked})
-    assert answer.content == replay_model(replay, 1.0, exaggeration=given)
 
 
 def test_a_kept_track_is_read_in_another_process(runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A file that cannot be read is reported under its own name; test_confined.py ends the other process."""
+    """A file that cannot be read is reported under its own name; test_other_process.py ends the other process."""
     app, folder, tracks = FastAPI(), RunFolders(tmp_path), TrackFolders(tmp_path)
     add_addresses(app, folder)
     (tmp_path / "older").symlink_to(runs / "older")
@@ -108,7 +96,7 @@ def test_a_kept_track_is_read_in_another_process(runs: Path, monkeypatch: pytest
     assert beside is not None and beside.place[:, :2].tolist() == [[1.0, 2.0], [3.0, 4.0]]
     (tmp_path / "tracks" / name / "track.csv").rename(tmp_path / "tracks" / name / "track.gpx")
     (tmp_path / "tracks" / name / "track.gpx").write_bytes(b"<gpx>" + b"<extensions>" * 2000)
-    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
+    monkeypatch.setattr("skisnow.web.replay_addresses.in_other_process", lambda work, *arguments: work(*arguments))
     answer = Client(app).get("/replay/data/older", params={"track": name})
     assert answer.status_code == 404 and "x.csv" in answer.text
 
@@ -173,7 +161,7 @@ def test_a_kept_track_has_a_page_of_turns_in_both_languages(tmp_path: Path, monk
     places = [(k * 0.2, a, b, 0.0) for k, (a, b) in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
     name = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
     # each process would import the package again; another test checks that they are separate
-    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
+    monkeypatch.setattr("skisnow.web.replay_addresses.in_other_process", lambda work, *arguments: work(*arguments))
     estimates: list[Any] = []
 
     def estimate_once(*given: Any) -> Any:

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
+from skisnow.replay import Replay, ReplayTrack, replay_of_run, write_replay
 
+from ...replay.held import ski_edges, snow_heights
 from ...replay.test_terrain_and_boots import X, Y, hills, over, run_with_boots
 from ...report.runs import circle_run
 from .browsers import HEIGHT, WIDTH, Watched, slowly
@@ -383,7 +384,7 @@ def test_moving_boots_over_measured_heights(drawing_chromium: Any, tmp_path: Pat
             assert found.transpose(1, 0, 2) == pytest.approx(ski_edges(replay, 3)[ski], abs=2e-5)
         mesh = np.array(seen.does("return [...replay.stage.surface.geometry.attributes.position.array]")).reshape(-1, 3)
         assert len(mesh) == (len(replay.terrain.x) + 2) * (len(replay.terrain.y) + 2)
-        assert mesh[:, 2] == pytest.approx(replay.terrain.heights(*mesh[:, :2].T), abs=1e-4)
+        assert mesh[:, 2] == pytest.approx(snow_heights(replay.terrain, *mesh[:, :2].T), abs=1e-4)
         bracket, boot = seen.does(
             """replay.seek(replay.end);
                const { place } = replay.run.arrays, sledge = replay.stage.skis.group.children[4];

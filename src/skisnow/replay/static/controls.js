@@ -36,7 +36,7 @@ export function made(tag, properties = {}, ...children) {
 }
 
 /** All parts of the page, by name. */
-export function controls({ run, ghost, modelAddress, movingModelAddress }) {
+export function controls({ run, ghost }) {
   const parts = {
     canvas: made("canvas", { className: "replay-canvas", tabIndex: 0, role: "img", "aria-label": said("Replay of {}", run.title) }),
     readings: made("dl", { className: "replay-readings", "aria-label": said("Readings") }),
@@ -54,8 +54,6 @@ export function controls({ run, ghost, modelAddress, movingModelAddress }) {
     shown: made("div", { className: "replay-shown", role: "group", "aria-label": said("What is shown") }),
     picture: made("button", { type: "button", textContent: said("Picture (PNG)") }),
     film: made("button", { type: "button", textContent: said("Film (WebM)") }),
-    movingModel: movingModelAddress ? fileLink(said("Model that moves (glTF)")) : null,
-    model: modelAddress ? fileLink(said("Model of this moment (glTF)")) : null,
   };
   for (const [name, text] of Object.entries(viewNames())) {
     parts.views.append(made("button", { type: "button", textContent: text, "data-view": name, "aria-pressed": "false" }));
@@ -71,7 +69,6 @@ function slider(label, min, max, step) {
   return made("input", { type: "range", min, max, step, value: min, "aria-label": label });
 }
 
-const fileLink = (text) => made("a", { textContent: text, className: "replay-button", download: "" });
 
 function choice(label, entries) {
   const options = entries.map(([value, text]) => made("option", { value, textContent: text }));
@@ -91,7 +88,7 @@ export function laidOut(root, parts, run) {
   const field = (text, ...inputs) => made("div", { className: "replay-field" }, made("span", { textContent: text }), ...inputs);
   const keys = made("dl", { className: "replay-keys" });
   for (const [key, text] of keysOf()) keys.append(made("dt", { textContent: key }), made("dd", { textContent: text }));
-  const takeAway = [parts.picture, parts.film, parts.movingModel, parts.model].filter(Boolean);
+  const takeAway = [parts.picture, parts.film].filter(Boolean);
   root.classList.add("replay");
   root.replaceChildren(
     made("div", { className: "replay-stage" }, parts.canvas, parts.readings, parts.legend, parts.map),

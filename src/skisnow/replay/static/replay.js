@@ -21,22 +21,19 @@ const LONGEST = 1000; // ms of play in one picture: a page that was hidden meanw
 /**
  * Show a run in an element.
  *
- * `run` and, for a second one laid over it, `ghost` are the bytes of replays. Where there is a server,
- * `modelAddress(time, exaggeration)` gives the address of a glTF model of a moment, `movingModelAddress(exaggeration)`
- * that of one that moves. `words` are translations, by the English texts. A calm replay leaves a machine without a
- * graphics card time for other things, and plays only in view.
+ * `run` and, for a second one laid over it, `ghost` are the bytes of replays. `words` are translations, by the English
+ * texts. A calm replay leaves a machine without a graphics card time for other things, and plays only in view.
  */
-export function startReplay(root, { run, ghost = null, modelAddress = null, movingModelAddress = null, words = null, isCalm = false }) {
+export function startReplay(root, { run, ghost = null, words = null, isCalm = false }) {
   speak(words);
-  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, { modelAddress, movingModelAddress }, isCalm);
+  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, isCalm);
 }
 
 class Player {
-  constructor(root, run, ghost, addresses, isCalm) {
+  constructor(root, run, ghost, isCalm) {
     this.run = run;
     this.ghost = ghost;
-    this.addresses = addresses;
-    this.parts = controls({ run, ghost, ...addresses });
+    this.parts = controls({ run, ghost });
     this.map = miniMap(run);
     this.parts.map = this.map.canvas;
     laidOut(root, this.parts, run);
@@ -119,8 +116,6 @@ class Player {
     this.meters.forEach((found, i) => found.forEach((each) => setMeter(each, this.lines[i])));
     parts.time.value = this.time;
     parts.time.setAttribute("aria-valuetext", said("{} seconds", decimal(this.time, 2)));
-    if (parts.model) parts.model.href = this.addresses.modelAddress(this.time, this.exaggeration);
-    if (parts.movingModel) parts.movingModel.href = this.addresses.movingModelAddress(this.exaggeration);
   }
 
   #compose() {

@@ -200,8 +200,7 @@ def _number(value: float | None, digits: int = 3) -> str:
 
 
 SUMMARY, GATES, PAGE = "summary.json", "gates.csv", "report.html"
-_STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY, "replay.glb")
-_MOMENTS: Final = "replay-*s.glb"
+_STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY)
 
 
 def write_run(
@@ -229,7 +228,7 @@ def write_run(
     prepare_folder(folder)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
-        stage.stale += [*_STALE, *(path.name for path in folder.glob(_MOMENTS))]
+        stage.stale += _STALE
         write_file(stage.path / SUMMARY, f"{json_text(contents)}\n")
         write_track(run, stage.path / "track.csv")
         result = run_gates(run)

@@ -28,8 +28,8 @@ from ..elements import (
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..page_requests import address
 from ..settings import BUILD_S, Lab
-from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
-from ..uploads import SKI_BOUNDS, confined
+from ..ski_editor import SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
+from ..uploads import in_other_process
 from ..widgets import ChartLine, LineChart, add_ski_table
 from .carve import ENDS
 
@@ -125,22 +125,19 @@ class _SkisPage:
             return
         if loaded is None or number != self._asked:  # the server ends, or a newer request exists
             return
-        skis, edited = loaded
-        self._status.say(" ".join(item.warned for item in skis if item.warned))
-        self._editor.show(edited.station, edited.cells)
-        self._show_skis([item.ski for item in skis])
+        self._status.say(" ".join(warned for _, warned in loaded if warned))
+        self._show_skis([ski for ski, _ in loaded])
 
     async def _check(self, edit: SkiEditInput) -> None:
         """Check a new text of a ski in a separate process with limits."""
         texts = (edit.text, edit.table)
         if texts != self._checked:
-            await run.io_bound(confined, SKI_BOUNDS, check_ski_texts, edit.text, edit.table)
+            await run.io_bound(in_other_process, check_ski_texts, edit.text, edit.table)
             self._checked = texts
 
-    def _edited_skis(self, words: list[str], edit: SkiEditInput) -> tuple[list[EditedSki], EditedSki]:
+    def _edited_skis(self, words: list[str], edit: SkiEditInput) -> list[tuple[Ski, str]]:
         edited = edit_ski_texts(edit)
-        others = (edited if word == EDITED else edit_ski_texts(SkiEditInput(*self._skis.texts(word))) for word in words)
-        return list(others), edited
+        return [edited if word == EDITED else edit_ski_texts(SkiEditInput(*self._skis.texts(word))) for word in words]
 
     def _show_skis(self, drawn: list[Ski]) -> None:
         self._facts.clear()
@@ -203,8 +200,8 @@ class _SkisPage:
 
 def _edited_texts(edit: SkiEditInput, name: str = "") -> tuple[str, str]:
     """Texts of the edited ski's file and table ("" without one)."""
-    edited = edit_ski_texts(edit, name=name)
-    return (edit.text, edit.table) if edit.is_file else texts_of_ski(edited.ski)
+    ski, _ = edit_ski_texts(edit, name=name)
+    return (edit.text, edit.table) if edit.is_file else texts_of_ski(ski)
 
 
 def _chart_lines(key: str, drawn: list[Ski]) -> Iterator[ChartLine]:

@@ -214,18 +214,17 @@ def test_end_of_a_run_by_its_summary(tmp_path: Path, summary: Any, cancelled: bo
     assert ("46.0 m" in found.said) is (summary is not None)
 
 
-@pytest.mark.parametrize(("cores", "workers"), [(1, 1), (2, 1), (4, 3)])
+@pytest.mark.parametrize(("cores", "workers"), [(1, "1"), (2, "1"), (4, "3")])
 def test_a_core_stays_free_for_the_pages(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cores: int, workers: int
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cores: int, workers: str
 ) -> None:
     monkeypatch.setattr(studies_module, "available_cores", lambda: cores)
-    studies = Studies(tmp_path)
-    assert (studies.workers, studies.folder) == (workers, tmp_path / "studies")
-    folder, here = tmp_path / "studies" / "n", ["--workers", str(workers)]
+    studies, folder = Studies(tmp_path), tmp_path / "studies" / "n"
     job = Job("n", CARVE, {}, "2026", language="de")
+    words = ["study", str(folder / "study.toml"), "--workers", workers]
     shown = ["--language", "de", "--figure", str(folder / "map.svg")]
-    assert studies._command(job) == ["study", str(folder / "study.toml"), *here, *shown]
-    assert studies._command(replace(job, scenario="a")) == ["study", str(folder / "study.toml"), *here]
+    assert studies._command(job) == [*words, *shown]
+    assert studies._command(replace(job, scenario="a")) == words
 
 
 def test_a_study_is_on_the_disk_when_it_is_in_the_queue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
