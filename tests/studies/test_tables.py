@@ -6,11 +6,10 @@ from typing import Any
 
 import pytest
 
-from skisnow._support.errors import OutputError, ParameterError, SkisnowError
+from skisnow._support.errors import OutputError, ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.studies import Study, StudyState, read_study, read_table, run_study, study_state
-from skisnow.studies.run import StudyRows
 from tests.coded import Coded, coded, raises
 
 PLAIN = """\
@@ -135,15 +134,3 @@ def test_a_run_that_another_overtook_computes_nothing(study: Study, monkeypatch:
     monkeypatch.setattr(KeptRows, "opened", late)
     with raises(OutputError, "in_use"):
         run_study(study, workers=1)
-
-
-def test_rows_of_workers_need_the_files_of_the_study(study: Study, tmp_path: Path) -> None:
-    own = tmp_path / "own.json"
-    own.write_text("{}", encoding="utf-8")
-    text = study.file.read_text(encoding="utf-8").replace('"no-such\\nski"', '"own.json"')
-    study.file.write_text(text, encoding="utf-8")
-    rows = StudyRows.of(read_study(study.file))
-    rows.require_files()
-    own.write_text("{ }", encoding="utf-8")
-    with raises(SkisnowError, "different_files"):
-        rows.require_files()

@@ -136,8 +136,7 @@ OPTIONS: Final = {
     "cells": (
         "KEY=VALUE",
         "decimal=, or thousands=. for numbers typed as text; fill-down=yes for blank names and angles; "
-        "hidden=no or struck=no to leave out what is hidden or struck through; by-sheet=yes for tests of one name "
-        "and site in several tables",
+        "hidden=no or struck=no to leave out what is hidden or struck through",
     ),
     "ignore": ("PLACE", "row, column or cell that is not imported: SHEET!5, SHEET!H, SHEET!H5"),
 }

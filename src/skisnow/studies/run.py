@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
-import platform
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, Self
 
-from .._support.errors import OutputError, ParameterError, SkisnowError
+from .._support.errors import OutputError, ParameterError
 from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, worker_count
 from .._support.processes.kept_rows import KeptRows
 from .._support.staging import cannot_write, write_file
-from .._support.user_files import is_file
 from .points import Point
 from .study import Study, StudyModel, read_study
 from .table import StudyTable, read_table
@@ -149,33 +146,17 @@ class StudyRows:
 
     subject: model that computes the values of a point.
     columns: columns of the table without the fingerprint of the study.
-    files: files that the points read, with the hash of each.
     """
 
     subject: StudyModel
     columns: tuple[str, ...]
-    files: tuple[tuple[Path, str], ...]
 
     @classmethod
     def of(cls, study: Study) -> Self:
-        """Rows of a study with the present contents of its files."""
-        files = [path.absolute() for path in study.subject.files(study.points)]
-        return cls(study.subject, study.columns[:-1], tuple((path, _file_hash(path)) for path in files))
+        """Rows of a study."""
+        return cls(study.subject, study.columns[:-1])
 
     def __call__(self, point: Point) -> list[Any]:
         """Values in the order of the columns, None for missing values."""
         row = self.subject(point)
         return [row.get(name) for name in self.columns]
-
-    def require_files(self) -> None:
-        """Raise an error if a file of the study is missing on this worker or has other contents."""
-        for path, wanted in self.files:
-            if _file_hash(path) != wanted:
-                raise SkisnowError(
-                    "the worker on {node} has not the {path} of this study. Put the study into a folder that all "
-                    "computers share"
-                ).tag("different_files", node=platform.node(), path=path)
-
-
-def _file_hash(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest() if is_file(path) else "absent"

@@ -375,7 +375,7 @@ def test_the_only_unknown_heading_is_proposed_for_the_only_missing_column() -> N
     require_right(propose(FILE, bytes_of(book), answers.with_("column", question.key, question.proposed)))
 
 
-def test_tests_of_one_name_and_site_on_two_sheets_are_kept_apart_by_the_sheet() -> None:
+def test_tests_of_one_name_and_site_on_two_sheets_are_an_error() -> None:
     book = everyday()
     first = book["Hang oben"]
     first["A3"] = "Ort: Hang"
@@ -383,14 +383,9 @@ def test_tests_of_one_name_and_site_on_two_sheets_are_kept_apart_by_the_sheet() 
     first.title, second.title, second["E17"].value = "Tag 1", "Tag 2", "23,2"
     for row in range(7, 13):
         second[f"D{row}"] = f"1,{row:02d}"
-    (question,) = propose(FILE, bytes_of(book)).questions
-    proposal = propose(FILE, bytes_of(book), Answers().with_(question.option, question.key, question.proposed))
-    campaign = campaign_of_files(proposal.files)
-    assert campaign.penetration is not None
-    assert set(campaign.penetration.site) == {"Hang"}
-    assert [name[:5] for name in campaign.penetration.experiment] == ["Tag 1", "Tag 1", "Tag 2", "Tag 2"]
-    last = campaign.penetration.first[1:] - 1
-    assert campaign.penetration.penetration_depth[last].tolist() == pytest.approx([1.41e-3, 1.59e-3, 1.09e-3, 1.12e-3])
+    proposal = propose(FILE, bytes_of(book))
+    assert {problem.code for problem in proposal.problems} == {"mixed_experiment"}
+    assert not proposal.files
 
 
 def test_thousands_separators_are_not_decimal_marks() -> None:

@@ -3,15 +3,12 @@
 import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
-from skisnow._support.processes import crews
 from skisnow._support.processes.batch import Pool, require_executor, run_batch
-from skisnow._support.processes.crews import Identity
 from skisnow._support.processes.kept_rows import KeptRows, json_text
 from skisnow.identification import identify
 from tests.coded import raises
@@ -90,30 +87,6 @@ def test_what_waits_is_taken_back_at_the_end() -> None:
     assert time.monotonic() - begun < 5.0  # of ten seconds
 
 
-def test_a_worker_with_another_skisnow_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
-    here = crews.own_identity()
-    for other in (Identity("0.0.9", here.core), Identity(here.version, "0123456789abcdef")):
-        identities = iter((other,))  # of the caller; the worker's are those that are installed here
-        monkeypatch.setattr(crews, "own_identity", lambda identities=identities: next(identities, here))
-        with raises(SkisnowError, "different_versions"):
-            run_batch(POINTS, dict, executor=Here())
-
-
-class Needy:
-    """Needs files that are not there."""
-
-    def __call__(self, point: Any) -> dict[str, Any]:
-        return dict(point)
-
-    def require_files(self) -> None:
-        raise SkisnowError("the files are others here")
-
-
-def test_a_worker_with_other_files_is_rejected() -> None:
-    with pytest.raises(SkisnowError, match="files are others"):
-        run_batch(POINTS, Needy(), executor=Here())
-
-
 @pytest.mark.parametrize(
     ("error", "kind", "code"),
     [
@@ -143,16 +116,6 @@ def test_futures_that_an_executor_cancels_are_reported() -> None:
 
     with raises(SkisnowError, "pool_failed"):
         run_batch(POINTS, dict, executor=Cancelling())
-
-
-def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    executor = Here()
-    monkeypatch.chdir(tmp_path)
-    crew = crews.Crew(executor, crews.on_workers(dict), 1)
-    (tmp_path / "elsewhere").mkdir()
-    monkeypatch.chdir(tmp_path / "elsewhere")
-    crew.submit([(0, POINTS[0])]).result()
-    assert Path.cwd() == tmp_path
 
 
 @pytest.mark.parametrize("executor", [3, "host:8786", "tcp://host:8786"])

@@ -19,7 +19,7 @@ from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import CHUNK_S, Crew, Done, Numbered, PointFunction, compute_rows, on_workers, process_crew
+from .crews import CHUNK_S, Crew, Done, Numbered, PointFunction, compute_rows, process_crew
 from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -210,7 +210,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     """
     require_executor(executor)
     if isinstance(executor, Executor):
-        return Crew(executor, on_workers(function), _workers_of(executor) or workers)
+        return Crew(executor, partial(compute_rows, function), _workers_of(executor) or workers)
     if executor == "processes":
         return process_crew(function, workers)
     threads = ThreadPoolExecutor(workers)  # the compiled core lets other threads run while it computes

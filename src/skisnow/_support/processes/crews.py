@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import pickle
-import platform
 import signal
 import threading
 import time
@@ -13,13 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from importlib.metadata import version
 from multiprocessing.connection import Connection
-from pathlib import Path
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, TypeAlias
 
-from ...compiled import core
 from ..errors import SkisnowError
 from .kept_rows import NumberedText, Row, json_text
 
@@ -36,7 +30,7 @@ class Crew:
     """Workers of an executor that compute chunks of points; a submitted chunk returns a future with its rows.
 
     executor: it is not shut down here.
-    compute: function from the points of a chunk to its rows; see `on_workers`.
+    compute: function from the points of a chunk to its rows; see `compute_rows`.
     size: number of chunks that the executor computes at once.
     close: function that stops the workers that this crew started; at once, in the middle of their work, if its argument
         is True.
@@ -72,11 +66,6 @@ def process_crew(function: PointFunction, workers: int) -> Crew:
         leash.close()
 
     return Crew(executor, _in_worker, workers, close, LARGEST_FOR_A_PIPE)
-
-
-def on_workers(function: PointFunction) -> Callable[[list[Numbered]], Done]:
-    """Function that computes a chunk on a worker of any computer; it contains `function` in pickled form."""
-    return partial(compute_on_worker, pickle.dumps(function), own_identity(), str(Path.cwd()))
 
 
 class _Worker:
@@ -136,49 +125,8 @@ class Done:
     seconds_per_point: float
 
 
-class Identity(NamedTuple):
-    """Version of skisnow and hash of its core's source: equal identities give the same bits on one kind of machine."""
-
-    version: str
-    core: str
-
-    def __str__(self) -> str:
-        """In words."""
-        return f"skisnow {self.version} with the core {self.core}"
-
-
-@lru_cache(maxsize=1)
-def own_identity() -> Identity:
-    """Version and core of this process's skisnow, cached because reading the version takes milliseconds."""
-    return Identity(version("skisnow"), core.SOURCE_HASH)
-
-
 def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
     """Call a function for numbered points; returns their rows and the mean time of a point (s)."""
     start = time.perf_counter()
     rows = [(number, json_text(function(point))) for number, point in points]
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
-
-
-def compute_on_worker(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
-    """Compute rows of points by a pickled function; the worker caches the last four functions.
-
-    identity: version and core of the sender's skisnow.
-    folder: working folder of the sender; the worker changes to it if it exists here.
-    """
-    if identity != own_identity():
-        raise SkisnowError(
-            "The worker on {node} has {installed}, this computer has {expected}. Install the same on both."
-        ).tag("different_versions", node=platform.node(), installed=own_identity(), expected=identity)
-    return compute_rows(_unpacked(packed, folder), points)
-
-
-@lru_cache(maxsize=4)
-def _unpacked(packed: bytes, folder: str) -> Any:
-    """Unpickle a function after a change to the sender's folder, and check that its input files are the same here."""
-    if Path(folder).is_dir() and folder != str(Path.cwd()):
-        os.chdir(folder)
-    function = pickle.loads(packed)
-    if (require_files := getattr(function, "require_files", None)) is not None:
-        require_files()  # an error if a file differs from that of the sender
-    return function

@@ -28,8 +28,7 @@ class Answers:
     site: site by sheet, or by heading row as SHEET:ROW.
     tool, plate: shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
     cells: "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above;
-        "hidden", "struck": "yes" to import what is hidden or struck through, "no" to leave it out; "by-sheet": "yes" if
-        tests of one name and site are different ones in each table.
+        "hidden", "struck": "yes" to import what is hidden or struck through, "no" to leave it out.
     ignore: rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
     """
 
@@ -140,7 +139,6 @@ WORDS = {
     "fill-down": Message("a name and an angle in each row"),
     "hidden": Message("visible rows, columns and sheets"),
     "struck": Message("rows without cells that are struck through"),
-    "by-sheet": Message("a name that only one test of a site has"),
     "ignore": Message("rows and notes without a doubt"),
 }
 """Required statement of each option, or of each key of --cells."""

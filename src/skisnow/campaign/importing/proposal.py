@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -20,11 +20,10 @@ from ..records import Campaign
 from .answers import NONE, Answers, Dialogue, Question
 from .columns import Note, choose_columns, is_about_numbers, stated_days, stated_sites
 from .folder import ToolText, campaign_files, described_tools, description
-from .rows import ImportedTable, StoredRow, stored_rows
+from .rows import ImportedTable, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
 from .sheets import HIDDEN, KINDS, Sheet, read_sheets
 
-BY_SHEET: Final = "by-sheet"
 SOFTEST: Final = 1e-4
 HARDEST: Final = 1e3
 """Median H_V (N/mm³) far beyond the range of 0.022 to 90 that was measured (assumption)."""
@@ -177,7 +176,7 @@ def _with_names(
                     cells[name] = text.name if text is not None else ""
             rows.append(replace(row, cells=cells))
         named.append(replace(table, rows=tuple(rows)))
-    return _unique(named, dialogue)
+    return _with_sites_before_names(named)
 
 
 def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: Sequence[Note]) -> list[Note]:
@@ -203,27 +202,6 @@ def _choose_site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Se
     return ""
 
 
-def _unique(tables: Sequence[ImportedTable], dialogue: Dialogue) -> list[ImportedTable]:
-    """Copies of the tables with the site before each name of a test that occurs in several tables of a kind.
-
-    If a site has the name in several tables, the sheet is also put before it, after a question.
-    """
-    by_site = _renamed(tables, _repeated_names(tables), lambda _, row: row.cells["site"])
-    again = _repeated_names(by_site)
-    if dialogue.answers.cells.get(BY_SHEET) == "yes":
-        kinds = Counter((table.form.file, table.section.sheet.name) for table in tables)
-        alone = {sheet for (_, sheet), count in kinds.items() if count == 1}
-        return _renamed(
-            by_site, again, lambda table, _: name if (name := table.section.sheet.name) in alone else table.section.key
-        )
-    for table in by_site:
-        names = {row.cells.get(table.form.key, "") for row in table.rows} & again.get(table.form.file, set())
-        if names and not dialogue.has_asked("cells", BY_SHEET):
-            value = Message("{name} in several tables", name=min(names))
-            dialogue.ask("cells", BY_SHEET, table.section.key, value=value, choices=("yes",), proposed="yes")
-    return by_site
-
-
 def _repeated_names(tables: Sequence[ImportedTable]) -> dict[str, set[str]]:
     """Names of tests that occur in several tables of a kind, by the file of the kind."""
     names: dict[str, Counter[str]] = {}
@@ -234,15 +212,14 @@ def _repeated_names(tables: Sequence[ImportedTable]) -> dict[str, set[str]]:
     return {file: problems for file, problems in repeated.items() if problems}
 
 
-def _renamed(
-    tables: Sequence[ImportedTable], files: Collection[str], before: Callable[[ImportedTable, StoredRow], str]
-) -> list[ImportedTable]:
-    """Copies of the tables; in those of these CSV files each name of a test is preceded by the text of `before`."""
+def _with_sites_before_names(tables: Sequence[ImportedTable]) -> list[ImportedTable]:
+    """Copies of the tables with the site before each name of a test if one occurs in several tables of a kind."""
+    files = _repeated_names(tables)
     return [
         replace(
             table,
             rows=tuple(
-                replace(row, cells=row.cells | {table.form.key: f"{before(table, row)} {row.cells[table.form.key]}"})
+                replace(row, cells=row.cells | {table.form.key: f"{row.cells['site']} {row.cells[table.form.key]}"})
                 for row in table.rows
                 if table.form.key in row.cells
             ),

@@ -60,7 +60,6 @@ QUESTIONS: Final = {
     "fill-down": template("Fill blank names and angles from the row above?"),
     "hidden": template("Import hidden rows, columns and sheets?"),
     "struck": template("Import rows that are struck through?"),
-    "by-sheet": template("Are these different tests? The name of the sheet is then put before theirs."),
 }
 """Question of each option of the command, or of each key of --cells."""
 
