@@ -106,7 +106,7 @@ class Law:
 def test_objects_are_sent_as_their_text() -> None:
     message = Message("{law!r} and {error}: {laws}", law=Law(), error=ParameterError(Message("Low")), laws=[Law()])
     received = pickle.loads(pickle.dumps(message))
-    assert (str(received), received.text("de")) == ("Law(0.2) and Low: Law(0.2)", "Law(0.2) and Niedrig: Law(0.2)")
+    assert (str(received), received.text("de")) == ("'Law(0.2)' and Low: Law(0.2)", "'Law(0.2)' and Niedrig: Law(0.2)")
 
 
 @pytest.mark.parametrize("count", [0, 1, 20])

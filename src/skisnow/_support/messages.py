@@ -144,31 +144,10 @@ def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Messa
     return message
 
 
-class _Printed(str):
-    """Text that replaces an object in a pickled message: the other process may lack its class."""
-
-    printed: str
-
-    def __new__(cls, value: object) -> _Printed:
-        return _make_printed(str(value), repr(value))
-
-    def __repr__(self) -> str:
-        return self.printed
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _make_printed, (str(self), self.printed)
-
-
-def _make_printed(text: str, printed: str) -> _Printed:
-    result = str.__new__(_Printed, text)
-    result.printed = printed
-    return result
-
-
 def _plain(value: Any) -> Any:
     """Field of a message that can be pickled: the value itself, or its text for an object of another class."""
     if isinstance(value, BaseException):
-        return getattr(value, "message", None) or _Printed(value)
+        return getattr(value, "message", None) or str(value)
     if isinstance(value, list | tuple | set | frozenset):
         return (
             type(value)(map(_plain, value))
@@ -176,7 +155,7 @@ def _plain(value: Any) -> Any:
             else list(map(_plain, value))
         )
     plain = value is None or isinstance(value, str | Real | date | Path | dict)
-    return value if plain or callable(getattr(type(value), "text", None)) else _Printed(value)
+    return value if plain or callable(getattr(type(value), "text", None)) else str(value)
 
 
 def _translate_and_fill(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:

@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
-from .._support.units import DEGREE, MM, Facts, Shown, amount, ends
+from .._support.units import DEGREE, MM, Facts, Shown, ShownFields, amount, ends
 from .problems import AppliedCorrection, Problem
 from .reading.campaign_file import Description
 from .smet import CampaignWeather
@@ -25,7 +25,7 @@ Key = TypeVar("Key", bound="Hashable")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class PenetrationSeries(Shown):
+class PenetrationSeries(ShownFields):
     """One penetration experiment: a tool at one edge angle under rising loads.
 
     experiment, site, tool: names as written in the file.
@@ -40,15 +40,8 @@ class PenetrationSeries(Shown):
     load: FloatArray
     penetration_depth: FloatArray
 
-    def _repr_facts(self) -> Facts:
-        tool = f"{self.tool} at {amount(self.edge_angle / DEGREE, '°')}"
-        readings = (
-            f"{len(self.load)} loads {ends(self.load, 'N')}, {ends(self.penetration_depth, 'mm', factor=MM)} deep"
-        )
-        return Facts(f"{self.experiment} at {self.site}: {tool}, {readings}")
 
-
-class _Readings(Shown):
+class _Readings(ShownFields):
     """Base of readings of several experiments in arrays, one experiment after the other, with offsets `first`."""
 
     __slots__ = ()
@@ -73,10 +66,6 @@ class UnloadingReadings(_Readings):
     load: FloatArray
     penetration_depth: FloatArray
     row: IntArray
-
-    def _repr_facts(self) -> Facts:
-        series = int(np.count_nonzero(np.diff(self.first)))
-        return Facts(f"of {series} experiments, {len(self.load)} readings, loads {ends(self.load, 'N')}")
 
     @property
     def count(self) -> IntArray:
@@ -155,10 +144,6 @@ class TurningReadings(_Readings):
     first: IntArray
     turning_angle: FloatArray
     moment: FloatArray
-
-    def _repr_facts(self) -> Facts:
-        tests = int(np.count_nonzero(np.diff(self.first)))
-        return Facts(f"of {tests} experiments, {len(self.moment)} readings, {ends(self.moment, 'N m')}")
 
 
 @dataclass(frozen=True, slots=True, repr=False)

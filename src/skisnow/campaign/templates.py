@@ -124,9 +124,6 @@ def _toml_line(key: str, cell: str, quantity: Quantity) -> str:
     return f"{about}{key} = {cell}\n" if cell else f"{about}# {key} =\n"
 
 
-_WIDEST: Final = 60
-
-
 def workbook_bytes(name: str) -> bytes:
     """The .xlsx file of a new campaign; notes at the headings explain the columns."""
     from openpyxl import Workbook
@@ -162,19 +159,12 @@ def _fill_sheet(
     sheet: Any, header: Sequence[str], rows: Iterable[Sequence[str | float]], *, notes: dict[str, str] | None = None
 ) -> None:
     from openpyxl.comments import Comment
-    from openpyxl.styles import Font
-    from openpyxl.utils import get_column_letter
 
-    every = [tuple(header), *rows]
-    for row in every:
+    for row in (header, *rows):
         sheet.append([None if cell == "" else cell for cell in row])
     for place, name in enumerate(header, start=1):
-        head = sheet.cell(1, place)
-        head.font = Font(bold=True)
         if notes and notes.get(name):
-            head.comment = Comment(notes[name], "skisnow", height=90, width=300)
-        longest = max(len(str(row[place - 1])) for row in every if len(row) >= place)
-        sheet.column_dimensions[get_column_letter(place)].width = min(longest, _WIDEST) + 3
+            sheet.cell(1, place).comment = Comment(notes[name], "skisnow", height=90, width=300)
     sheet.freeze_panes = "A2"
 
 

@@ -202,19 +202,16 @@ def _choose_site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Se
     return ""
 
 
-def _repeated_names(tables: Sequence[ImportedTable]) -> dict[str, set[str]]:
-    """Names of tests that occur in several tables of a kind, by the file of the kind."""
-    names: dict[str, Counter[str]] = {}
-    for table in tables:
-        own = {row.cells[table.form.key] for row in table.rows if row.cells.get(table.form.key)}
-        names.setdefault(table.form.file, Counter()).update(own)
-    repeated = {file: {name for name, times in count.items() if times > 1} for file, count in names.items()}
-    return {file: problems for file, problems in repeated.items() if problems}
-
-
 def _with_sites_before_names(tables: Sequence[ImportedTable]) -> list[ImportedTable]:
     """Copies of the tables with the site before each name of a test if one occurs in several tables of a kind."""
-    files = _repeated_names(tables)
+    names = Counter(
+        name
+        for table in tables
+        for name in {
+            (table.form.file, row.cells[table.form.key]) for row in table.rows if row.cells.get(table.form.key)
+        }
+    )
+    files = {file for (file, _), times in names.items() if times > 1}
     return [
         replace(
             table,
