@@ -227,9 +227,15 @@ def test_figures_and_json_are_written(turn: Path, tmp_path: Path, capsys: Printe
 
 
 def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:
-    assert main(["track", str(turn), "--json", "--window-s", "2", "--noise-m", "0.05"]) == 0
-    smoothing = json.loads(capsys.readouterr().out)["smoothing"]
-    assert (smoothing["window_s"], smoothing["place_noise_m"]) == (2.0, 0.05)
+    """Twice the noise is twice the interval of the curvature 1/r."""
+    widths = []
+    for noise in ("0.05", "0.1"):
+        assert main(["track", str(turn), "--json", "--window-s", "2", "--noise-m", noise]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert found["smoothing"]["window_s"] == 2.0
+        low, high = found["turns"][0]["least_radius_interval_m"]
+        widths.append(1.0 / low - (0.0 if high is None else 1.0 / high))
+    assert widths[1] == pytest.approx(2.0 * widths[0], rel=1e-6)
 
 
 def test_tracks_with_too_few_points_are_rejected(turn: Path, tmp_path: Path, noted_errors: list[SkisnowError]) -> None:

@@ -12,7 +12,7 @@ from .._support.errors import ParameterError
 from .._support.units import DEGREE, Facts, Shown, amount
 from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
-from .path_estimate import Interval, PlaceNoise, estimate_place_noise
+from .path_estimate import Interval
 from .runs import Day, Stretch, max_speed, split_day
 from .track import Track, solution_counts
 from .turns import Turn, find_turns
@@ -43,8 +43,6 @@ class TrackSummary(Shown):
         Ends of the 95 % interval of the length by places (m); None with recorded speeds.
     horizontal_distance
         Length of the path seen from above (m), with its 95 % interval; None with recorded speeds.
-    place_noise
-        Noise of the places from point to point, or an upper bound of it; None if neither can be estimated.
     remarks
         Sentences on unknown and doubtful quantities.
 
@@ -62,7 +60,6 @@ class TrackSummary(Shown):
     max_speed_interval: tuple[float, float] | None
     distance_interval: tuple[float, float] | None
     horizontal_distance: Interval | None
-    place_noise: PlaceNoise | None
     remarks: tuple[str, ...]
 
     def _repr_facts(self) -> Facts:
@@ -126,7 +123,6 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
         track, motion, day, turns, distances, *max_speed(track, motion, slice(None)),
         None if length is None else (length.low, length.high),
         None if motion.path is None else motion.path.length(with_heights=False),
-        PlaceNoise(place_noise, is_bound=False) if place_noise else estimate_place_noise(track, motion.smoothed),
         (*track.notes, *_remarks(track, motion, distances), *day.remarks),
     )  # fmt: skip
 
@@ -171,7 +167,6 @@ def summary_dict(summary: TrackSummary) -> Json:
     """The JSON of `skisnow track`; its JSON Schema is that of ``skisnow schema track``. Null: unknown or infinite."""
     smoothed = summary.motion.smoothed
     horizontal = summary.horizontal_distance
-    noise = summary.place_noise
     from_places = summary.motion.arc_length_source == "places"
     return {
         "schema_version": SCHEMA_VERSION,
@@ -197,8 +192,6 @@ def summary_dict(summary: TrackSummary) -> Json:
             "half_amplitude_period_s": json_number(smoothed.resolution.half_period),
             "ninety_percent_period_s": json_number(smoothed.resolution.faithful_period),
             "half_amplitude_wavelength_m": json_number(half_wavelength(summary)),
-            "place_noise_m": None if noise is None else json_number(noise.value),
-            "place_noise_is_bound": noise is not None and noise.is_bound,
             "velocity_noise_m_per_s": json_number(smoothed.speed_noise),
         },
         "runs": [_stretch_dict(run, "descent_m", 1.0) for run in summary.day.runs],

@@ -70,9 +70,6 @@ def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "seen from above", f"{plain(values['horizontal_distance_m'], 5)} m{horizontal}"
     speed = f"{plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
     yield "highest speed", f"{speed}, {_SPEED_WORDS[values['speed_source']]}"
-    if smoothing["place_noise_m"] is not None:
-        noise = f"{plain(smoothing['place_noise_m'], 2)} m a coordinate, from point to point"
-        yield "noise of the places", f"at most {noise}" if smoothing["place_noise_is_bound"] else noise
     yield "smoothing", f"cubics by least squares in windows of {plain(smoothing['window_s'])} s"
     length = smoothing["half_amplitude_wavelength_m"]
     wave = "" if length is None else f" ({plain(length)} m at the median speed of the runs)"
