@@ -12,7 +12,6 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
-from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import median_filter
 
@@ -39,6 +38,7 @@ _SPACING: Final = 0.02
 _MOST_MARKS: Final = 16
 _HALO: Final = [withStroke(linewidth=2.2, foreground="white")]  # clears the lines behind a time mark's text
 _LABEL_POINTS: Final = 12.0  # distance of a time mark's text from the track (points)
+_APART_MM: Final = 9.0  # minimum distance (mm) of two time marks with texts
 
 
 def run_track(run: Run) -> Figure:
@@ -101,18 +101,22 @@ def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -
     """Draw the tracks of both skis with time marks, start and end."""
     for ski, colour in enumerate(SKI_COLOURS):
         axes.plot(run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], color=colour, linewidth=0.9)
-    _draw_time_marks(axes, run)
+    _draw_time_marks(axes, run, min(_PLAN_MM / (limits[1] - limits[0]), _LARGEST_MM / (limits[3] - limits[2])))
     plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
-    hide_overlapping(axes, min(_PLAN_MM / (limits[1] - limits[0]), _LARGEST_MM / (limits[3] - limits[2])))
 
 
-def _draw_time_marks(axes: Axes, run: Run) -> None:
+def _draw_time_marks(axes: Axes, run: Run, mm_per_metre: float) -> None:
+    """Draw a mark each second, with its time unless the text before is too near; the end with its outcome."""
     every = max(1, math.ceil(run.simulated_s / _MOST_MARKS))
     marks = np.arange(0.0, run.simulated_s + 1e-9, every)
     x, y = (np.interp(marks, run.time, run.place[:, k]) for k in (0, 1))
     axes.plot(x, y, linestyle="none", marker="o", markersize=2.6, color=BLACK, zorder=4)
     aside = np.interp(marks, run.time, np.unwrap(run.heading))
+    labelled: tuple[float, float] | None = None
     for mark, at_x, at_y, angle in zip(marks, x, y, aside, strict=True):
+        if labelled is not None and mm_per_metre * math.dist(labelled, (at_x, at_y)) < _APART_MM:
+            continue
+        labelled = float(at_x), float(at_y)
         aside_points, above_points = -_LABEL_POINTS * math.sin(angle), _LABEL_POINTS * math.cos(angle)
         words, is_first = (Message("start"), True) if mark == 0.0 else (Message("{time:g} s", time=mark), False)
         offset = (
@@ -120,8 +124,8 @@ def _draw_time_marks(axes: Axes, run: Run) -> None:
             above_points,
         )  # clear of the numbers at the axis
         axes.annotate(
-            words, (float(at_x), float(at_y)), offset, textcoords="offset points",
-            ha="left" if is_first else "center", va="center", fontsize=6.5, gid=MARK, path_effects=_HALO,
+            words, labelled, offset, textcoords="offset points",
+            ha="left" if is_first else "center", va="center", fontsize=6.5, path_effects=_HALO,
         )  # fmt: skip
     axes.plot(*run.place[-1, :2], linestyle="none", marker="s", markersize=3.4, color=BLACK, zorder=4)
     ended = Message("{outcome} at {time:.2f} s", outcome=outcome_words(run.outcome), time=run.simulated_s)
@@ -205,28 +209,3 @@ def groove_corners(arc_length: FloatArray, aside: FloatArray, width: FloatArray,
 
 
 STEADY: Final = 9  # lines of snow over which the drawn edges of a groove are medians
-MARK: Final = "time mark"  # group of the time marks' texts, as the artist's gid
-_POINT_MM: Final = 25.4 / 72.0
-_LETTER: Final = 0.62  # approximate ratio of the width of a letter to the font size
-
-
-def hide_overlapping(axes: Axes, mm_per_unit: float) -> None:
-    """Hide time marks that overlap an earlier visible one; both axes have the same scale."""
-    taken: list[tuple[float, float, float, float]] = []
-    for word in axes.texts:
-        if isinstance(word, Annotation) and word.get_gid() == MARK:
-            box = _box(word, mm_per_unit)
-            is_free = not any(
-                all(abs(box[k] - other[k]) < box[2 + k] + other[2 + k] for k in (0, 1)) for other in taken
-            )
-            word.set_visible(is_free)
-            taken += [box] if is_free else []
-
-
-def _box(word: Annotation, mm_per_unit: float) -> tuple[float, float, float, float]:
-    """Centre x, y and half width and height (mm) of a time mark's text on the figure."""
-    (x, y), (aside, above), size = word.xy, word.get_position(), float(word.get_fontsize()) * _POINT_MM
-    half_width = 0.5 * _LETTER * size * (len(word.get_text()) + 1)  # and a space
-    more = half_width if word.get_horizontalalignment() == "left" else 0.0
-    centre = x * mm_per_unit + aside * _POINT_MM + more, y * mm_per_unit + above * _POINT_MM
-    return (*centre, half_width, 0.6 * size)
