@@ -14,6 +14,7 @@ from skisnow.carving.answer import CarveAnswer, answer_dict
 from skisnow.carving.question import CarveQuestion
 from skisnow.cli import main
 from skisnow.cli.shell import json_schema
+from skisnow.ski.ski_file import keys_text
 from tests.key_names import FORCE_PER_LENGTH, WAIST_WIDTH
 
 from .json_answer import json_answer
@@ -246,14 +247,38 @@ def test_sensitivities_are_in_the_json_and_the_table(capsys: Printed) -> None:
     assert WAIST_WIDTH in capsys.readouterr().out
 
 
-def test_skis_are_compared_in_percent(capsys: Printed) -> None:
-    from skisnow.report.summaries import carve_summary
+def test_skis_are_compared_in_percent_and_by_definitions_of_the_radius(capsys: Printed) -> None:
+    from skisnow.report.summaries import carve_summary, rank_warnings
 
     found = answer([*ASKED, "--ski", "carver", *SNOW], capsys)
     slalom, carver = found["skis"]
     percent = 100.0 * (carver["side_force_limit_N"] / slalom["side_force_limit_N"] - 1.0)
     (row,) = (line for line in carve_summary(found).splitlines() if line.startswith("shear capacity"))
     assert float(row.split()[-1]) == pytest.approx(percent, rel=0.05)
+    assert list(rank_warnings(found)) == []
+
+
+def test_two_definitions_of_the_radius_rank_two_skis_differently(tmp_path: Path, capsys: Printed) -> None:
+    """With less camber the boot's circle becomes smaller by 4.8 %, the chord's by 0.8 %; 1.5 mm less sidecut widens
+    both by more than 3 %.
+    """
+    from skisnow.report.summaries import rank_warnings
+
+    keys: dict[str, Any] = dict(skisnow.read_ski("slalom").keys or {})
+    keys |= {"name": "flat", "camber_mm": 1.0, "tip_width_mm": keys["tip_width_mm"] - 1.5}
+    keys["tail_width_mm"] -= 1.5
+    path = tmp_path / "flat.toml"
+    path.write_text(keys_text(keys), encoding="utf-8")
+    words = ["--ski", "slalom", "--ski", str(path), "--edge-angle-deg", "30", "--load-N", "800"]
+    words += ["--published", "race-piste", "--unloading-ratio", "10"]
+    found = answer(words, capsys)
+    (warning,) = rank_warnings(found)
+    assert (warning.code, warning.fields["one"], warning.fields["two"]) == ("ranks_differ", "slalom", "flat")
+    slalom, flat = found["skis"]
+    assert flat["turn_radius_boot_m"] < 0.99 * slalom["turn_radius_boot_m"]
+    assert flat["turn_radius_chord_m"] > 1.02 * slalom["turn_radius_chord_m"]
+    assert main(["carve", *words]) == 0
+    assert str(warning) in capsys.readouterr().out
 
 
 def test_intervals_of_the_snow_give_intervals_of_the_answer() -> None:

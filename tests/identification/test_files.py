@@ -9,6 +9,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.cli.shell import json_schema
+from skisnow.identification import identify
 from skisnow.identification.data import data_description, read_data
 from skisnow.identification.data_tables import PhotoCells
 from skisnow.scenario import scenario_text
@@ -57,6 +58,12 @@ def test_another_column_is_nobody_s_concern(tmp_path: Path) -> None:
     found = read_data(file_in(tmp_path, CELLS.replace("time_s\n", "time_s,weather\n")))
     assert isinstance(found, PhotoCells)
     assert found.runs[0].time.tolist() == [3.34, 5.1, 6.5]
+
+
+def test_what_was_measured_once_counts_once(tmp_path: Path) -> None:
+    one, copy = file_in(tmp_path, CELLS), file_in(tmp_path, CELLS, "copy.csv")
+    with raises(ParameterError, "same_file"):
+        identify("carved-46m", [one, copy], "mu_0")
 
 
 def test_the_track_of_a_run_is_a_track(tmp_path: Path) -> None:

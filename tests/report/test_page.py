@@ -146,8 +146,19 @@ def test_regressions_are_those_of_the_results(reference: Reported, read: _Reader
         assert all(map(_agrees, ends, found["interval"][1], (3, 3)))
 
 
+@pytest.mark.usefixtures("undrawn")
+def test_the_headline_of_one_site_is_its_hardness(campaign: Campaign, tmp_path: Path) -> None:
+    one = reported(replace(campaign, shear=None, penetration=first_series(campaign, 30)), tmp_path)
+    row = next(row for row in one.results["comparisons"] if row["quantity"] == "H_V_N_per_mm3" and row["own"])
+    low, high = row["own_interval"]
+    (headline,) = re.findall(r'<p class="headline">(.*?)</p>', one.html)
+    told = re.findall(r"-?\d+\.\d+|\d+", re.sub(r"<su[bp]>.*?</su[bp]>", "", headline).replace("95 %", ""))
+    assert [float(each) for each in told[:3]] == pytest.approx([row["own"], low, high], rel=0.005)
+
+
 def test_a_report_on_several_sites_begins_with_the_verdicts(reference: Reported) -> None:
     top = reference.html.partition("<dl")[0]
+    assert 'class="headline"' not in top
     assert [escape(verdict) for verdict in verdicts(reference.results)] == re.findall("<li>(.*?)</li>", top)
 
 

@@ -43,6 +43,16 @@ def test_dataframe_has_a_row_for_each_experiment(analysis: Analysis) -> None:
     assert len(analysis.to_dataframe("shear")) == len(analysis.results["shear"]["experiments"])
 
 
+def test_dataset_has_the_numbers_and_units_of_both_kinds(analysis: Analysis) -> None:
+    pytest.importorskip("xarray")
+    dataset = analysis.to_xarray()
+    stress = dataset["shear_S_f_N_per_mm2"]
+    assert (stress.dims, stress.units) == (("shear_experiment",), "N/mm²")
+    expected = [row["S_f_N_per_mm2"] for row in analysis.results["shear"]["experiments"]]
+    np.testing.assert_array_equal(stress.values, expected)
+    assert dataset["penetration_H_V_low_N_per_mm3"].units == "N/mm³"
+
+
 def test_what_is_not_there_is_an_error(analysis: Analysis) -> None:
     for unknown in ("model_rsme", "hardness_mean_force"):
         with raises(ParameterError, "unknown_figure"):

@@ -166,6 +166,15 @@ class Analysis(Shown):
 
         return analysis_dataframe(self, kind)
 
+    def to_xarray(self) -> Any:
+        """All experiments with their results, units as attributes; needs xarray (``skisnow[xarray]``).
+
+        Returns: Over the dimensions ``penetration_experiment`` and ``shear_experiment``.
+        """
+        from ..report.campaign.summary import analysis_dataset
+
+        return analysis_dataset(self)
+
     def _repr_facts(self) -> Facts:
         selected = self.penetration.selected if self.penetration is not None else None
         rows = [

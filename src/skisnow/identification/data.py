@@ -142,6 +142,7 @@ def collect_data(
     """Read the files, move tracks into the slope's frame, and check the data against the scenario."""
     if not data:
         raise ParameterError("there are no data: name one or several files").tag("no_data")
+    _require_different([datum for datum in data if isinstance(datum, str | Path)])
     measurements = [read_data(datum) if isinstance(datum, str | Path) else datum for datum in data]
     names: set[str] = set()
     methods: list[str] = []
@@ -204,6 +205,20 @@ def _unique_name(name: str, taken: set[str]) -> str:
         unique, number = f"{clean}-{number}", number + 1
     taken.add(unique)
     return unique
+
+
+def _require_different(paths: Sequence[str | Path]) -> None:
+    """Reject two files with the same content: their data would count twice, and intervals would be too narrow."""
+    seen: dict[bytes, str | Path] = {}
+    for path in paths:
+        if not is_file(path):
+            continue  # its reader reports it
+        content = hashlib.sha256(Path(path).read_bytes()).digest()
+        if content in seen:
+            raise ParameterError("{path} has the same content as {other}. Name each file once").tag(
+                "same_file", path=path, other=seen[content]
+            )
+        seen[content] = path
 
 
 def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) -> dict[str, dict[str, Any]]:

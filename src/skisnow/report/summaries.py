@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from .._support.errors import SkisnowError
+from .._support.errors import SkisnowError, SkisnowWarning
 from .._support.messages import Message
 from .._support.units import DEGREE
 from .._support.user_files import is_file, read_json
@@ -59,6 +60,7 @@ def carve_summary(contents: Json) -> str:
         if halves := answer.get("half_intervals"):
             words = ", ".join(f"{output} ±{plain(half, 2)}" for output, half in halves.items())
             lines.append(f"95 % intervals by the snow, {title}: {words}")
+    lines += map(str, rank_warnings(contents))
     for title, answer in zip(titles, answers, strict=True):
         if answer["remedy"]:
             lines += ["", f"{title}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"]
@@ -150,6 +152,22 @@ def _difference(first: str | float | None, other: str | float | None) -> str:
         return ""
     percent = 100.0 * (other / first - 1.0)
     return "0" if abs(percent) < _SAME else f"{percent:+.2g}"
+
+
+def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
+    """Yield a warning for each pair of skis, in the JSON of carve, that definitions of the radius rank differently."""
+    answers = answers_of(contents)
+    for (one, first), (two, second) in itertools.combinations(zip(ski_titles(answers), answers, strict=True), 2):
+        radii = [(name, of(first), of(second)) for name, of in _ROWS if "radius" in name]
+        finite = [(name, a, b) for name, a, b in radii if isinstance(a, float) and isinstance(b, float)]
+        tighter, wider = ([(n, a, b) for n, a, b in finite if (b - a) * side > 0.0] for side in (1.0, -1.0))
+        if tighter and wider:
+            (name, a, b), (other, c, d) = tighter[0], wider[0]
+            yield SkisnowWarning(
+                "Definitions of the radius rank {one} and {two} differently: {name} {a} and {b}, {other} {c} and {d}."
+            ).tag(
+                "ranks_differ", one=one, two=two, name=name, a=plain(a), b=plain(b), other=other, c=plain(c), d=plain(d)
+            )
 
 
 def identify_summary(result: Identification) -> str:

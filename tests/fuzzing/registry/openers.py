@@ -35,6 +35,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "interop.fmu.writing:_licence": "package data",
     "identification.data:fingerprint": "bytes for a SHA-256",
     "identification.result:identification_dict": "bytes for a SHA-256",
+    "identification.data:_require_different": "bytes for a SHA-256",
     "simulation.run_summary:_provenance_json": "bytes for a SHA-256",
     "studies.run:_file_hash": "bytes for a SHA-256",
     "studies.study:Study.fingerprint": "bytes for a SHA-256",

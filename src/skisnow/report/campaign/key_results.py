@@ -35,6 +35,25 @@ def key_results(data: ReportData) -> list[Markup]:
     return [sentence for sentence in sentences if sentence is not None]
 
 
+def headline(data: ReportData) -> Markup:
+    """Sentence with mean H_V, or S_f without H_V, and its interval; empty without either, or with several sites."""
+    for key, sentence in (
+        ("H_V_N_per_mm3", template("Snow hardness H_V {value}, {ends}, over {sites}.")),
+        ("S_f_N_per_mm2", template("Failure shear stress S_f {value}, {ends}, over {sites}.")),
+    ):
+        row, unit = own_value(data, key), QUANTITY[key][1]
+        sites = {mean["site"] for mean in data.results["site_means"] if mean["quantity"] == key}
+        if row is not None and len(sites) <= 1:
+            ends: str = Message("without an interval")
+            if row["own_interval"] is not None:
+                ends = Message("95 % interval {ends} {unit}", ends=interval(row["own_interval"]), unit=unit)
+            value = Markup("<strong>{} {}</strong>").format(significant(row["own"]), unit)
+            return prose(sentence, value=value, ends=ends, sites=counted(len(sites), "{count} site", "{count} sites"))
+        if row is not None:
+            break
+    return Markup("")
+
+
 def own_value(data: ReportData, quantity: str) -> Json | None:
     """Entry of the results with mean, interval and range of a quantity in this campaign; None without a value."""
     rows = (row for row in data.results["comparisons"] if row["quantity"] == quantity and row["own"] is not None)

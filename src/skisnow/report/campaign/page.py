@@ -24,7 +24,7 @@ from ..formatting import significant
 from ..sheet import cited_text, render_template
 from ..table import Table, table_csv, table_html
 from .data import ReportData
-from .key_results import key_results
+from .key_results import headline, key_results
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
 from .site_figures import residuals, sites, snow_profiles
@@ -171,6 +171,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "synthetic": data.synthetic,
         "dates": _dates(data),
         "analysed": results["provenance"]["time"],
+        "headline": headline(data),
         "verdicts": verdicts(results),
         "counts": data.counts,
         "has_penetration": has_penetration,

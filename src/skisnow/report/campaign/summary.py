@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from ..._support.environment import import_extra
 from ..._support.errors import ParameterError, suggest_and_list
 from ..._support.messages import Message
+from ..._support.units import unit_of_name
 from ..formatting import terminal_text
 from .data import Json, ReportData
 from .key_results import key_results
@@ -16,6 +20,7 @@ from .verdicts import caveats, verdicts
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
+    from xarray import Dataset
 
     from ...estimation.analysis import Analysis
 
@@ -73,6 +78,19 @@ def analysis_dataframe(analysis: Analysis, kind: str) -> DataFrame:
             "unknown_kind", kind=kind, names=suggest_and_list(kind, KINDS)
         )
     return pandas.DataFrame(_rows(analysis, kind))
+
+
+def analysis_dataset(analysis: Analysis) -> Dataset:
+    """All experiments; see `Analysis.to_xarray`."""
+    xarray = import_extra("xarray", extra="xarray", what=Message("An analysis as a Dataset"))
+    variables: dict[str, Any] = {}
+    for kind in KINDS:
+        rows = _rows(analysis, kind)
+        for name in rows[0] if rows else ():
+            column = np.array([math.nan if row[name] is None else row[name] for row in rows])
+            unit = unit_of_name(name).symbol.replace("°", "degree")
+            variables[f"{kind}_{name}"] = f"{kind}_experiment", column, {"units": unit} if unit else {}
+    return xarray.Dataset(variables, attrs={"campaign": analysis.campaign.name})
 
 
 def _rows(analysis: Analysis, kind: str) -> list[dict[str, Any]]:
