@@ -10,7 +10,7 @@ from .._support.errors import FieldDataError, StoreError
 from .._support.messages import Message, joined
 from ..campaign import QUALITY_FLAGS, Campaign, campaign_of_files
 from ..campaign.problems import Problem
-from ..campaign.reading.campaign import READ_FILES
+from ..campaign.reading.campaign import ATTACHMENTS, READ_FILES
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
 from ..campaign.reading.campaign_files import FilesInMemory
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
@@ -27,6 +27,7 @@ from ..campaign.store import (
     replay_journal,
     stored_tables,
 )
+from ..campaign.store.export import rows_of_file
 from ..campaign.store.replayed import Reading
 from ..campaign.store.stored_tables import cell_key
 from ..estimation import quality_flags
@@ -82,6 +83,10 @@ class EditSession:
     def unit(self, file: str, column: str) -> str:  # noqa: ARG002
         """Unit of the cells of a column if it differs from that of its name; never for entered cells."""
         return ""
+
+    def attached_in_files(self, file: str, test: str) -> list[dict[str, str]]:  # noqa: ARG002
+        """Rows of the campaign's attachments.csv about a test; never for entered campaigns."""
+        return []
 
     def refresh(self) -> None:
         """Read the journal's entries since the last call and update the campaign."""
@@ -166,6 +171,8 @@ class CorrectionSession(EditSession):
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.stored, self._files = lab.store.contents(id_, READ_FILES)
+        _, attached = lab.store.contents(id_, {ATTACHMENTS})
+        self._attached = attached.get(ATTACHMENTS, b"")
         self._tables = unfold_workbooks(FilesInMemory(self._files))
         self._entries: tuple[JournalEntry, ...] = ()
         stored = stored_tables(self._tables)
@@ -208,18 +215,22 @@ class CorrectionSession(EditSession):
         conversion = self.tables[file].conversions.get(column)
         return conversion.name if conversion is not None else ""
 
+    def attached_in_files(self, file: str, test: str) -> list[dict[str, str]]:
+        """Rows of the campaign's attachments.csv about a test."""
+        return rows_of_file(self._attached, file, test)
+
     def file_cells(self, file: str, name: str) -> dict[str, str]:
         """Cells of a test as in the files, without corrections."""
-        rows = self.tables[file].tests.get(name, {}) if file in self.tables else {}
+        rows = self.tables[file].tests.get(name, {}) if file in self.tables else {}  # none of a photo
         return {cell_key(line, column): text for line, cells in rows.items() for column, text in cells.items()}
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
-        """Store a correction, cancellation or undo; see `Journals.correct`.
+        """Store a correction, cancellation, undo or attachment; see `Journals.correct`.
 
         Raises StoreError: as in `Journals.correct`; or the corrections are in a sheet of a workbook, which is not
             edited.
         """
-        if CORRECTIONS.file in self._tables.places:
+        if CORRECTIONS.file in self._tables.places and entry.file != ATTACHMENTS:
             raise StoreError(OWN_SHEET).tag("in_a_workbook")
         standing = self.file_cells(entry.file, entry.test)
         written = self._journals.correct(self.id, entry, seen=seen, standing=standing)

@@ -370,6 +370,31 @@
     telling.get(once)();
   }
 
+  // A photo as JPEG in base64: at most 1600 px, and as coarse as the store needs it; drawing it again drops data that a camera adds, such as a position.
+  async function photo(event, emit) {
+    const field = event.target;
+    try {
+      const picture = await createImageBitmap(field.files[0]);
+      const scale = Math.min(1, 1600 / Math.max(picture.width, picture.height));
+      const canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [picture.width, picture.height].map((side) => Math.max(1, Math.round(scale * side)));
+      canvas.getContext("2d").drawImage(picture, 0, 0, canvas.width, canvas.height);
+      const drawn = [0.85, 0.7, 0.5, 0.3].map((quality) => canvas.toDataURL("image/jpeg", quality).split(",")[1]);
+      emit({ photo: drawn.find((text) => text.length < 900000) ?? drawn.at(-1) });
+    } catch {
+      emit({ refused: "photo" });
+    }
+    field.value = ""; // the same file can be chosen again
+  }
+
+  // The position, after the user pressed the button; the browser asks for consent, too.
+  function position(event, emit) {
+    if (!isSecureContext || !navigator.geolocation) return emit({ refused: "insecure" });
+    const found = ({ coords: { latitude, longitude, accuracy } }) => emit({ latitude, longitude, accuracy });
+    const failed = (error) => emit({ refused: error.code === error.PERMISSION_DENIED ? "denied" : "unavailable" });
+    navigator.geolocation.getCurrentPosition(found, failed, { enableHighAccuracy: true, timeout: 20000 });
+  }
+
   /** The page's language, whenever the framework sets its own. */
   function speak() {
     if (document.documentElement.lang !== language) document.documentElement.lang = language;
@@ -391,8 +416,9 @@
   new MutationObserver(speak).observe(document.documentElement, { attributeFilter: ["lang"] });
   document.documentElement.style.setProperty("--not-stored", JSON.stringify(SAID.refused));
   document.documentElement.classList.add("not-connected");
+  document.documentElement.classList.toggle("is-insecure", !isSecureContext);
   tellHolding();
   window.lab = {
-    ask, answered, connected, drawAnew, drawn, enter, goTo, grown, leave, leaving, onward, reading, refusedLast, resent, told,
+    ask, answered, connected, drawAnew, drawn, enter, goTo, grown, leave, leaving, onward, photo, position, reading, refusedLast, resent, told,
   };
 })();

@@ -1,5 +1,6 @@
 """Correcting an imported campaign: contents of the page, what is written down beside its files, what is refused."""
 
+import base64
 from pathlib import Path
 from typing import Any
 
@@ -107,6 +108,17 @@ def test_a_test_is_listed_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) -> 
     assert len([each for each in page.tagged("div") if each.classes == ["fields", "row"]]) == 3
     assert len([each for each in page.tagged("div") if each.classes == ["fields"]]) == 1
     assert page.field("Tool").options == {"ski piece": "ski piece"}
+
+
+def test_a_photo_is_added_to_an_imported_test(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_)
+    field = next(each for each in page.tagged("input") if "file" in str(each.props.get("type")))
+    page.fire(field, "change", {"photo": base64.b64encode(b"\xff\xd8\xff").decode()})
+    (entry,) = history(desk, id_)
+    assert (entry.action, entry.file, entry.cells["test"]) == ("add", "attachments.csv", "1")
+    page.shows("Photo, 0 kB")
+    correct(desk, id_, "1", {"2/depth_mm": "1,6"})
+    assert CorrectionSession(desk.lab, id_).whole_campaign().penetration is not None
 
 
 def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:

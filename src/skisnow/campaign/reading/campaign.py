@@ -35,6 +35,8 @@ from .workbook_files import is_workbook, unfold_workbooks
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files of a campaign, in the order of reading; workbooks can replace them."""
+ATTACHMENTS: Final = "attachments.csv"
+"""Photos and positions of tests, which no number depends on."""
 
 
 class _ReadFiles(Container[str]):
@@ -211,7 +213,7 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
         if name not in CAMPAIGN_FILES and name.lower() in raw.absent:
             action = Message("Rename it to {name}.", name=name.lower())
             raw.problems.append(error("unreadable_file", name, value=name, allowed=name.lower(), action=action))
-    other = [name for name in sorted(names) if names[name] and name not in (*CAMPAIGN_FILES, *raw.hashes)]
+    other = [name for name in sorted(names) if names[name] and name not in (*CAMPAIGN_FILES, ATTACHMENTS, *raw.hashes)]
     raw.unread = (*(name for name in other if not name.startswith((".", "~$"))), *campaign.unread)
     hashes = {name: sha256 for name, sha256 in raw.hashes.items() if name not in campaign.of_sheets}
     raw.hashes = hashes | campaign.hashes

@@ -4,11 +4,15 @@ from .conflict import Conflict, Side
 from .export import (
     ExportedCampaign,
     FoundCampaign,
+    Position,
+    attachments_of,
     corrected_files,
     entered_files,
     export_corrected,
     export_entered,
     find_campaign,
+    photo_entry,
+    position_entry,
     write_campaign,
 )
 from .journal import JournalHead, Journals, OvertakenError
@@ -20,9 +24,9 @@ from .sync import SyncResult, sync
 
 __all__ = [
     "AddedCampaign", "Conflict", "ExportedCampaign", "Finding", "FoundCampaign", "JournalEntry", "JournalHead",
-    "Journals", "NewEntry", "OvertakenError", "Reading", "ReplayedCampaign", "ReplayedTest",
+    "Journals", "NewEntry", "OvertakenError", "Position", "Reading", "ReplayedCampaign", "ReplayedTest",
     "Side", "Store", "StoredCampaign", "StoredFile", "StoredTable", "SyncResult",
-    "campaign_files", "campaign_in_memory", "corrected_files", "default_path", "entered_files",
-    "export_corrected", "export_entered", "find_campaign", "replay_journal",
+    "attachments_of", "campaign_files", "campaign_in_memory", "corrected_files", "default_path", "entered_files",
+    "export_corrected", "export_entered", "find_campaign", "photo_entry", "position_entry", "replay_journal",
     "stored_tables", "sync", "write_campaign",
 ]  # fmt: skip

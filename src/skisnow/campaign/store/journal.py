@@ -132,7 +132,7 @@ class Journals:
             return write_entry(connection, id, entry)
 
     def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:
-        """Write a correction, cancellation or undo of a campaign that is stored byte for byte.
+        """Write a correction, cancellation or undo of a campaign that is stored byte for byte, or add an attachment.
 
         id: complete id of the campaign.
         entry: entry about one test; ``about`` of a correction is filled in.
@@ -148,14 +148,15 @@ class Journals:
             _require_current(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=now()))
-            added = journal_entry.c.action == "add"
-            query = select(journal_entry.c.sequence).where(_is_about_test(id, entry), added)
-            base = connection.execute(query).scalars().first()
-            if base is None:
-                file, test = entry.file, entry.test
-                original = NewEntry(action="add", file=file, test=test, cells=standing, why="as the file has it")
-                base = write_entry(connection, id, original, uid=uid_of_file(id, file, test)).sequence
-            entry = replace(entry, about=base) if entry.action == "correct" else entry
+            if entry.action != "add":  # an added photo or position is in no file
+                added = journal_entry.c.action == "add"
+                query = select(journal_entry.c.sequence).where(_is_about_test(id, entry), added)
+                base = connection.execute(query).scalars().first()
+                if base is None:
+                    file, test = entry.file, entry.test
+                    original = NewEntry(action="add", file=file, test=test, cells=standing, why="as the file has it")
+                    base = write_entry(connection, id, original, uid=uid_of_file(id, file, test)).sequence
+                entry = replace(entry, about=base) if entry.action == "correct" else entry
             _require_entry_of_test(connection, id, entry)
             return write_entry(connection, id, entry)
 

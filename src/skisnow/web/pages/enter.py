@@ -12,7 +12,7 @@ from ..._support.messages import Message
 from ...campaign.store.stored_tables import cell_key, checked_cell
 from ..edit_session import CorrectionSession, EditSession
 from ..elements import choice, field, folded, heading, link, page_frame, sentence
-from ..entry.changes import UNANSWERED, ask_correction, changes
+from ..entry.changes import UNANSWERED, Attachments, ask_correction, changes
 from ..entry.readings import FILE, Field, checked_fields, faults, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
@@ -48,6 +48,7 @@ def add_page(lab: Lab) -> None:
             view = TableView(session, table, form=Message("Entry"), below=Message("Changes and entries"))
             with view.below:
                 entry_list = view.entry_list = EntryList(view)
+                Attachments(view, lambda: entry_list.current)
             if table == FILE:
                 head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
                 _show_series(view, entry_list, test, head)
@@ -107,6 +108,7 @@ def _show_test(session: CorrectionSession, file: str, name: str) -> None:
     view = TableView(session, file, form=Message("Cells"), below=Message("Changes"))
     with view.below, ui.element("div").classes("acts"):
         link(Message("Another test"), correction_address(session.id, table=file))
+        Attachments(view, lambda: name)
     ImportedTestForm(session, view, name).show()
 
 
