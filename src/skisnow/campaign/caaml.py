@@ -100,6 +100,7 @@ class _Profile:
         self._snow_height = height
 
     def _refuse(self, element: str, value: str, allowed: str, action: str) -> NoReturn:
+        """Raise a FieldDataError with one problem at an element of this file."""
         raise FieldDataError(
             [error("unreadable_file", self._file, column=element, value=value, allowed=allowed, action=action)]
         )
@@ -136,12 +137,14 @@ class _Profile:
         return [(parent, child) for parent in self._measured.named(profile) for child in parent.named(name)]
 
     def _total_snow_height(self) -> float | None:
+        """Total snow height (m) of the snow pit, or None if the file states none."""
         components = self._measured.child("snowPackCond", "hS", "Components")
         if components is not None:
             return self._quantity(LENGTH, components, "height")
         return self._quantity(LENGTH, self._measured, "hS", "Components", "snowHeight")
 
     def _time(self) -> str:
+        """Time of the observation as the file writes it, or the start of its period; "" if it is missing."""
         records = (self._root.child("timeRef", "recordTime"), self._root.child("validTime"))
         paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
         return next(filter(None, (record.text_of(*path) for record in records if record for path in paths)), "")
@@ -153,6 +156,7 @@ class _Profile:
         return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._text_or_empty(text)
 
     def _observer(self) -> str:
+        """Name of the observing person or organisation; "" if it is missing."""
         source = self._root.child("srcRef") or self._root.child("metaDataProperty", "MetaData", "srcRef")
         if source is None:
             return ""
@@ -178,6 +182,7 @@ class _Profile:
         return both[0], both[1]
 
     def _layer(self, profile: Element, layer: Element) -> SnowLayer:
+        """Snow layer of an element: depths (m), hand hardness (of top and bottom if both are given), grains."""
         top, thickness = self._top_and_thickness(profile, layer)
         hand, upper, lower = (
             self._text_or_empty(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom")
@@ -193,6 +198,7 @@ class _Profile:
         )
 
     def _densities(self) -> tuple[LayerDensity, ...]:
+        """Densities (kg/m³) of the layers, in the order of the file; rejects a median too low for kg/m³."""
         densities = tuple(self._density(*pair) for pair in self._children_by_profile("densityProfile", "Layer"))
         middle = median(density.snow_density for density in densities) if densities else LIGHTEST
         if 0.0 < middle < LIGHTEST:
@@ -205,18 +211,21 @@ class _Profile:
         return densities
 
     def _density(self, profile: Element, layer: Element) -> LayerDensity:
+        """Density (kg/m³) of one layer with its top and thickness (m); rejects a value outside the limits."""
         top, thickness = self._top_and_thickness(profile, layer)
         density = self._required_number(DENSITY, profile, layer, "density")
         self._require_within("density", density, _DENSITIES, "kg/m³")
         return LayerDensity(top, density, thickness)
 
     def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
+        """Snow temperature (°C) at a depth below the surface (m); rejects a value outside the limits."""
         depth = self._depth_below_surface("depth", self._required_number(LENGTH, profile, observed, "depth"))
         temperature = self._required_number(TEMPERATURE, profile, observed, "snowTemp")
         self._require_within("snowTemp", temperature, _TEMPERATURES, "°C")
         return DepthTemperature(depth, temperature)
 
     def _forces(self, profile: Element) -> ForceProfile:
+        """Force (N) over depth (m) of a penetrometer, from a list of pairs or else from its layers."""
         about = profile.child("hardnessMetaData") or profile.child("MetaData") or profile
         method = self._text_or_empty(about.text_of("methodOfMeas"))
         rows = profile.text_of("Measurements", "tupleList").split()
@@ -236,6 +245,7 @@ class _Profile:
         return ForceProfile(method, columns[0], columns[1])
 
     def _plate_value(self, name: str, units: CaamlUnits) -> PlateValue | None:
+        """Value of skisnow's own element `name`, with its count and interval; None if it is missing."""
         custom = self._measured.child("customData", name)
         if custom is None or custom.namespace != OWN_NAMESPACE:
             return None
@@ -247,6 +257,7 @@ class _Profile:
         return PlateValue(self._convert(units, name, self._finite(name, custom.text), unit), count, interval)
 
     def _top_and_thickness(self, profile: Element, layer: Element) -> tuple[float, float | None]:
+        """Depth of a layer's top below the surface and its thickness (m; None if it is not stated)."""
         thickness = self._quantity(LENGTH, layer, "thickness", profile=profile)
         self._require_within("thickness", thickness or 0.0, (0.0, _DEEPEST), "m")
         top = self._required_number(LENGTH, profile, layer, "depthTop")
@@ -261,6 +272,7 @@ class _Profile:
         return top - value if self._from_ground else value
 
     def _require_within(self, element: str, value: float, limits: tuple[float, float], unit: str) -> None:
+        """Reject a value outside the limits, which count as allowed; `unit` is for the error message."""
         low, high = limits
         if not low <= value <= high:
             self._refuse(
@@ -271,6 +283,7 @@ class _Profile:
             )
 
     def _required_number(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
+        """Number of a child element in SI; rejects a missing one."""
         value = self._quantity(units, parent, name, profile=profile)
         if value is None:
             self._refuse(
@@ -299,6 +312,7 @@ class _Profile:
         return self._convert(units, name, self._finite(name, text), units_given[0] if units_given else None)
 
     def _convert(self, units: CaamlUnits, name: str, value: float, unit: str | None) -> float:
+        """Value in SI; rejects an unknown unit or a number that is too large."""
         converted = units.convert(value, unit)
         if converted is None:
             allowed, action = (
@@ -316,12 +330,14 @@ class _Profile:
         return converted
 
     def _finite(self, element: str, text: str) -> float:
+        """Number of a text; rejects what is not a finite number."""
         value = number(text)
         if math.isnan(value):
             self._refuse(element, text.strip()[:80], Message("a finite number"), Message("Correct the number."))
         return value
 
     def _text_or_empty(self, text: str) -> str:
+        """The text, or "" if it is one of the format's words for a missing value."""
         return "" if text.lower() in NIL else text
 
 

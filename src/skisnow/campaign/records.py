@@ -111,6 +111,7 @@ class PenetrationTests(_Readings):
         return len(self.experiment)
 
     def _repr_facts(self) -> Facts:
+        """Title with the counts, and rows with sites, tools and ranges, for the representation."""
         rows = (
             ("sites", _name_list(self.site)),
             ("tools", _name_list(self.tool)),
@@ -177,6 +178,7 @@ class ShearTests(Shown):
         return len(self.experiment)
 
     def _repr_facts(self) -> Facts:
+        """Title with the count, and rows with sites, plates and ranges, for the representation."""
         rows = (
             ("sites", _name_list(self.site)),
             ("plates", _name_list(self.plate)),
@@ -205,6 +207,7 @@ class DensitySamples(Shown):
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def _repr_facts(self) -> Facts:
+        """Title with the count, the range of densities and the sites, for the representation."""
         return Facts(f"of {len(self.sample)} samples: {ends(self.snow_density, 'kg/m³')}; {_name_list(self.site)}")
 
     def site_means(self) -> dict[str, float]:
@@ -230,6 +233,7 @@ class DropConeTests(Shown):
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def _repr_facts(self) -> Facts:
+        """Title with the count, the range of depths and the sites, for the representation."""
         return Facts(
             f"of {len(self.test)} repeats: {ends(self.drop_cone_depth, 'mm', factor=MM)}; {_name_list(self.site)}"
         )
@@ -244,10 +248,12 @@ class DropConeTests(Shown):
 
 
 def _name_list(names: Sequence[str]) -> str:
+    """Different names in their order, separated by commas."""
     return ", ".join(dict.fromkeys(names))
 
 
 def _means_by_key(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) -> dict[Key, float]:
+    """Mean of the values with the same key; cancelled ones, which have a reason, are left out."""
     collected: dict[Key, list[float]] = {}
     for key, value, why in zip(keys, values.tolist(), cancelled, strict=True):
         if not why:
@@ -288,6 +294,7 @@ class Campaign(Shown, Description):
     weather: CampaignWeather | None = None
 
     def _repr_facts(self) -> Facts:
+        """Name as title, and rows with place, counts, gauge step and warnings, for the representation."""
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}
         counts = [(name, "none" if table is None else table._repr_facts().title) for name, table in tables.items()]
         gauge = "not stated" if self.gauge_resolution is None else amount(self.gauge_resolution / MM, "mm")

@@ -82,10 +82,12 @@ def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
 
 
 def _is_filled(reasons: tuple[str, ...]) -> BoolArray:
+    """True for each test with a reason, shape (n,)."""
     return np.fromiter(map(bool, reasons), dtype=np.bool_, count=len(reasons))
 
 
 def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArray:
+    """True for each depth (m) below the smallest usable one; all False if the resolution is None."""
     if resolution is None:
         return np.zeros(len(depth), dtype=np.bool_)
     return depth < RESOLUTIONS * resolution * (1 - _ROUNDING)
@@ -191,6 +193,7 @@ def flag_problems(
 
 
 def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
+    """Index of an experiment and code of a flag, for every flag that applies."""
     codes = [code for code in QUALITY_FLAGS if code in masks]
     if codes:
         for index, which in np.argwhere(np.stack([masks[code] for code in codes], axis=1)).tolist():
@@ -203,6 +206,7 @@ def _number(value: float) -> Message:
 
 
 def _shear_problems(campaign: Campaign, tests: ShearTests, masks: Mapping[str, BoolArray]) -> Iterator[Problem]:
+    """Warnings for all flags of shear tests; the value is the reason if cancelled, otherwise the depth (mm)."""
     for index, code in _flagged_experiments(masks):
         value = tests.cancelled[index] if code == "cancelled" else _number(tests.penetration_depth[index] / MM)
         yield _flag(campaign, code, SHEAR.file, int(tests.row[index]), tests.experiment[index], value)

@@ -68,6 +68,7 @@ class StationSeries(Shown):
     fields: Mapping[str, FloatArray] = field(repr=False)
 
     def _repr_facts(self) -> Facts:
+        """Station, number of rows, first and last time (UTC) and fields, for the representation."""
         ends = [
             datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M") for seconds in self.time[[0, -1]].tolist()
         ]
@@ -133,6 +134,7 @@ class _Reading:
         self._header, self._data = self._split()
 
     def _refuse(self, line: int, column: str, value: str, allowed: str, action: str) -> NoReturn:
+        """Raise a FieldDataError with one problem at a line and, unless it is "", a column."""
         problem = error(
             "unreadable_file", self._file, row=line, column=column or None, value=value, allowed=allowed, action=action
         )
@@ -185,7 +187,8 @@ class _Reading:
 
     def _in_si(self, table: FloatArray, names: Sequence[str]) -> FloatArray:
         """Table of the readings converted to SI by ``units_offset`` and ``units_multiplier`` of the header."""
-        offsets, factors = self._units("units_offset", 0.0, names), self._units("units_multiplier", 1.0, names)
+        offsets = self._numbers_by_field("units_offset", 0.0, names)
+        factors = self._numbers_by_field("units_multiplier", 1.0, names)
         with np.errstate(over="ignore", invalid="ignore"):
             offset_first = self._version in _OFFSET_FIRST
             values = (table + offsets) * factors if offset_first else table * factors + offsets
@@ -221,18 +224,21 @@ class _Reading:
                 self._refuse(line, name, f"{gaps[0]:g}", f"{text} for missing values", f"State nodata = {gaps[0]:g}.")
 
     def _number_of(self, key: str, default: float) -> float:
+        """Number of a key of the header, or `default` if the key is missing."""
         if key not in self._header:
             return default
         line, text = self._header[key]
         return self._number(line, key, text)
 
     def _number(self, line: int, column: str, text: str) -> float:
+        """Number of a text; rejects what is not a finite number."""
         value = number(text)
         if math.isnan(value):
             self._refuse(line, column, text[:80], "a finite number", "Correct the number.")
         return value
 
-    def _units(self, key: str, default: float, names: Sequence[str]) -> list[float]:
+    def _numbers_by_field(self, key: str, default: float, names: Sequence[str]) -> list[float]:
+        """Numbers of a header's key, one for each field; `default` for all if the key is missing."""
         if key not in self._header:
             return [default] * len(names)
         line, text = self._header[key]
@@ -244,6 +250,7 @@ class _Reading:
         return numbers
 
     def _times_and_values(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:
+        """Times (s since 1970) and values (rows, fields); rejects unsorted times and a file without rows."""
         zone, place = timezone(timedelta(hours=offset)), names.index(_TIME)
         times: list[float] = []
         table: list[list[float]] = []
@@ -264,6 +271,7 @@ class _Reading:
         return np.array(times), np.array(table)
 
     def _moment(self, line: int, text: str, zone: timezone) -> float:
+        """Seconds since 1970 of an ISO time, in `zone` if it states none; rejects other texts and years."""
         try:
             time = datetime.fromisoformat(text)
             moment = (time if time.tzinfo else time.replace(tzinfo=zone)).astimezone(UTC)
@@ -305,6 +313,7 @@ class CampaignWeather(Shown):
     settings: WeatherSettings
 
     def _repr_facts(self) -> Facts:
+        """Title of the station's series, for the representation."""
         return self.series._repr_facts()
 
     @property

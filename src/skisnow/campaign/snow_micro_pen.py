@@ -127,6 +127,7 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
 
 
 def _refuse(name: str, value: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
+    """Raise a FieldDataError with one problem of the file `name`."""
     raise FieldDataError([error(code, name, value=value, allowed=allowed, action=action)])
 
 
@@ -176,6 +177,7 @@ def _recording_day(file: str, clock: tuple[int, ...]) -> date | None:
 
 
 def _position_or_none(header: dict[str, Any]) -> tuple[float, float] | tuple[None, None]:
+    """Latitude and longitude (°) with the signs of their hemispheres; two None if invalid or both are 0."""
     latitude, longitude = header["latitude_deg"], header["longitude_deg"]
     signs = {ord("N"): 1.0, ord("E"): 1.0, ord("S"): -1.0, ord("W"): -1.0}
     north, east = header["hemisphere"].upper()
@@ -254,6 +256,7 @@ class SnowMicroPenRecordings(Shown):
         return parse_snow_micro_pen(self.file[index], self.contents[index])
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of recordings, the depths of the forces and the sites."""
         depths = f"{amount(self.settings.from_depth / MM)} to {amount(self.settings.to_depth / MM, 'mm')}"
         return Facts(f"of {len(self)} recordings, forces from {depths}; {', '.join(dict.fromkeys(self.site))}")
 

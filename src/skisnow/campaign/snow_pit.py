@@ -98,6 +98,7 @@ class SnowPit(Shown):
     failure_shear_stress: PlateValue | None = None
 
     def _repr_facts(self) -> Facts:
+        """Title with name, time, counts and snow height, for the representation."""
         height = "not known" if self.snow_height is None else amount(self.snow_height / CM, "cm")
         counts = f"{len(self.layers)} layers, {len(self.densities)} densities, {len(self.temperatures)} temperatures"
         return Facts(f"{self.name!r}, {self.time or 'no time'}: {counts}, snow height {height}")

@@ -116,6 +116,7 @@ length_mm = {PLATE_LENGTH_MM:g}
 
 
 def _toml_line(key: str, cell: str, quantity: Quantity) -> str:
+    """Commented TOML line of a key; without a value the key itself is a comment."""
     about = f"# {quantity.meaning}{f' ({quantity.unit})' if quantity.unit else ''}\n"
     if quantity.kind == "text":
         return f'{about}{key} = "{cell}"\n'
@@ -158,6 +159,7 @@ _OBSERVERS: Final = ("observers", "", "", "who; several are parted by semicolons
 def _fill_sheet(
     sheet: Any, header: Sequence[str], rows: Iterable[Sequence[str | float]], *, notes: dict[str, str] | None = None
 ) -> None:
+    """Write a header and rows into a sheet, with notes as comments on the header, and freeze the header."""
     from openpyxl.comments import Comment
 
     for row in (header, *rows):

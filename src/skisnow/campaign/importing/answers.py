@@ -72,6 +72,7 @@ class Answers:
 
 
 def _split(kind: str, text: str) -> tuple[str, str]:
+    """Key and value of an option such as "name=value"; the value is "yes" for `ignore`; rejects a missing "="."""
     key, equals, value = text.rpartition("=")
     if kind == "ignore":
         return text, "yes"
@@ -97,6 +98,7 @@ def parse_template(text: str, name: str) -> Answers:
 
 
 def _template_answers(values: Mapping[str, Any], name: str) -> Answers:
+    """Answers in the section [import] of a campaign.toml; rejects a file without them or with other types."""
     section = values.get(SECTION)
     answers = {kind: section.get(kind, {}) for kind in IMPORT_ANSWERS} if isinstance(section, Mapping) else {}
     texts = all(

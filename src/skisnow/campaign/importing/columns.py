@@ -117,6 +117,7 @@ def _stated_units(
 def _choose_unit(
     section: Section, form: TableForm, heading: str, column: str, below: str, dialogue: Dialogue, notes: Sequence[Note]
 ) -> UnitConversion | None:
+    """Conversion to a column's unit; None, with an error or a question added, unless exactly one unit is stated."""
     units = _stated_units(form, heading, column, below, dialogue, notes)
     sizes = {conversion(unit, column) for unit in units}
     is_unknown = not known_unit(below) and below.casefold() not in NO_UNIT and below != heading

@@ -87,6 +87,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
 
 
 def _choose_table_form(section: Section, dialogue: Dialogue) -> TableForm | None:
+    """Table that a section of a sheet contains; None, with a question added, if it is not clear."""
     form = table_of(section, dialogue.answers)
     if form is None:
         value = ", ".join(section.headings)
@@ -112,6 +113,7 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section]) -> tuple[Note, 
 
 
 def _import_table(section: Section, form: TableForm, dialogue: Dialogue, notes: Sequence[Note]) -> ImportedTable:
+    """Table from a section of a sheet; without rows if a question about its columns is open."""
     own = [note for note in notes if _is_about_table(note, section.sheet.name, {section.sheet.name})]
     before = len(dialogue.open)
     columns = choose_columns(section, form, dialogue, own)
@@ -190,6 +192,7 @@ def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: S
 
 
 def _choose_site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Sequence[Note]) -> str:
+    """Site of a sheet's table, from the answers or the sheet and its notes; "" with a question if it is unclear."""
     for key in (table.section.key, sheet):
         if key in dialogue.answers.site:
             return dialogue.answers.site[key]

@@ -75,6 +75,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
 
 
 def _stated_columns(heading: str) -> set[str]:
+    """Columns of all tables that a heading states."""
     return {column for form in KINDS.values() if (column := stated_column(form, heading))}
 
 
@@ -118,6 +119,7 @@ def _is_complete(sheet: Sheet, row: int, columns: range) -> bool:
 
 
 def _row_texts(sheet: Sheet, row: int, columns: range) -> list[str]:
+    """Texts of a row's cells in `columns`, with merged cells filled."""
     return [sheet.cell(row, column, filled=True) for column in columns]
 
 
@@ -139,6 +141,7 @@ def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
 
 
 def _make_section(sheet: Sheet, row: int, columns: range, heads: Sequence[tuple[int, range]]) -> Section:
+    """Section below a row of headings, up to the next headings; without its empty and hidden columns."""
     later = [other for other, group in heads if other > row and set(group) & set(columns)]
     headings, start = tuple(_row_texts(sheet, row, columns)), row + 1
     below = [sheet.cell(row + 1, column).strip("[]()").strip() for column in columns]
@@ -160,6 +163,7 @@ def _make_section(sheet: Sheet, row: int, columns: range, heads: Sequence[tuple[
 
 
 def _is_empty(sheet: Sheet, column: int, rows: range) -> bool:
+    """True if a column has no text in `rows`."""
     return not any(sheet.cell(row, column, filled=True) for row in rows)
 
 

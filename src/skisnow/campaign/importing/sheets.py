@@ -146,10 +146,12 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
 
 
 def _count_headings(cells: Sequence[str]) -> int:
+    """Largest number of cells that state a column of the same table."""
     return max(sum(bool(stated_column(form, cell.strip())) for cell in cells) for form in TABLES)
 
 
 def _read_rows(text: CsvText, *, most: int | None = None) -> Rows:
+    """Cells by line, with single spaces; blank lines are empty rows. `most`: maximum number of lines (default: all)."""
     rows: Rows = []
     blank: list[str] = []  # shared by all blank lines
     for lines, records in text.records(most):

@@ -174,6 +174,7 @@ class _RawCampaign(RawFiles):
 
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _RawCampaign:
+    """Read a campaign's folder or workbook; a path that is neither becomes a problem, not an exception."""
     if folder.is_file() and is_workbook(folder.name):
         return _read_all(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
@@ -192,6 +193,7 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _RawCa
 
 
 def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _RawCampaign:
+    """Read all files of a campaign: tables with corrections applied, recordings, weather, and all problems."""
     campaign = unfold_workbooks(campaign_files)
     raw = _RawCampaign(campaign, campaign.problems, places=campaign.places)
     raw.described = read_description(raw)
@@ -234,6 +236,7 @@ def read_description(files: RawFiles) -> CampaignFile | None:
 
 
 def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
+    """Contents of campaign.toml; None, with a problem added, if it is missing, empty or unreadable."""
     decoded = files.decoded(CAMPAIGN_FILE, decode)
     if CAMPAIGN_FILE in files.absent:
         action = Message(

@@ -206,6 +206,7 @@ def _new_name(entry: TomlValues, names: set[str]) -> str | None:
 
 
 def _required_length(entry: TomlValues, quantity: Quantity) -> float | None:
+    """Length (m) of a required key; None, with an error added, if it is missing or invalid."""
     if quantity.name not in entry.values:
         entry.refuse(quantity.name, Message("a length in mm above 0"), Message("Add {name}.", name=quantity.name))
     return _in_si(entry, quantity)

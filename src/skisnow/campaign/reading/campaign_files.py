@@ -120,6 +120,7 @@ class RawFiles:
             return None
 
     def _report_unreadable(self, name: str, what: str) -> None:
+        """Add the problem that a file is unreadable; `what` is in its place instead of a plain file."""
         action = Message("Make the file readable, or remove it from the campaign.")
         allowed = Message("a plain file that may be read")
         self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
@@ -174,6 +175,8 @@ def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]
 
 
 def _read_recording(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
+    """Bytes of a valid .PNT file named in a row of the table; None, with problems added, if it is not valid."""
+
     def refuse(allowed: Message) -> None:
         action = Message("Put the file next to the tables, correct its name, or remove the row.")
         files.problems.append(table.error(row, "unreadable_file", "file", name, allowed, action))

@@ -141,6 +141,7 @@ class NumberCollector:
         self._parts.append(values)
 
     def _how_to_write(self, cell: str) -> Message:
+        """Advice for a cell that is not a number: enter it, change its decimal mark, or write it plainly."""
         if not cell:
             return Message("Enter the number.")
         if is_number(cell, "." if self._mark == "," else ","):
@@ -211,6 +212,7 @@ class Table:
         return warning(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 
     def _problem_place(self, row: int, column: str | None) -> dict[str, Any]:
+        """File, row, column and experiment of a problem at the table's row with this index."""
         experiment = self.names[self.form.key][row] or None
         return {"file": self.form.file, "row": int(self.row[row]), "column": column, "experiment": experiment}
 
@@ -281,6 +283,7 @@ def numbers(cells: Sequence[str], mark: str) -> FloatArray:
 
 
 def _all_numbers(cells: Sequence[str]) -> list[float]:
+    """Numbers of cells, NaN for empty ones; ValueError if another cell is not a number."""
     try:
         return list(map(float, cells))
     except ValueError:
@@ -320,6 +323,7 @@ def iso_moment(cell: str) -> str | None:
 
 
 def _iso_text(match: re.Match[str], *, slashes: bool) -> str | None:
+    """ISO date (with time if given) of a day-month-year match; None if slashes leave day and month ambiguous."""
     day, month, year = (int(match[name]) for name in ("day", "month", "year"))
     if slashes and day != month:
         if day <= 12 and month <= 12:

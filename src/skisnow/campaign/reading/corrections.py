@@ -109,6 +109,7 @@ class Corrector:
             self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
     def _correct_record(self, cells: list[str], correction: Correction) -> None:
+        """Apply a correction to a record in place; adds a problem if its column or old value does not match."""
         position = self._position.get(correction.column)
         if position is None:
             allowed = Message("a column of {file}: {columns}", file=correction.file, columns=list(self._position))
@@ -120,6 +121,7 @@ class Corrector:
             cells[position] = correction.new.replace(".", ",") if is_number_here else correction.new
 
     def _matches_record(self, cells: list[str], position: int, correction: Correction) -> bool:
+        """True if experiment and old value are those of the correction; otherwise adds a problem."""
         key_position = self._position.get(self._key)
         experiment = cells[key_position].strip() if key_position is not None else correction.experiment
         if experiment != correction.experiment:

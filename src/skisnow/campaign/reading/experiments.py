@@ -121,6 +121,7 @@ def check_one_site(table: Table) -> Iterator[Problem]:
 
 
 def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
+    """Errors for experiments whose name an earlier, separate block of rows already has."""
     key = table.names[table.form.key]
     code = key.code[blocks.start]
     _, met_first = np.unique(code, return_index=True)
@@ -137,6 +138,7 @@ def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def _mixed_error(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:
+    """Error for a row whose `column` differs from that of the experiment's row `reference`."""
     allowed = Message(
         "one {column} in an experiment; row {row} has {other!r}",
         column=column,
@@ -233,6 +235,7 @@ def single_rows(table: Table) -> dict[str, Any]:
 
 
 def _cells_at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:
+    """Texts of a column at the given row indices."""
     return tuple(map(column.names.__getitem__, column.code[rows].tolist()))
 
 

@@ -132,6 +132,7 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
 
 
 def _advise_mapping(heading: str, column: str) -> Message:
+    """Advice to rename a heading as `column` or map it; warns of the unit if the column has one."""
     if not unit_of_column(column):
         advice = template("Did you mean {column!r}? Rename {heading!r}, or map it under [columns] in campaign.toml.")
     else:
@@ -187,4 +188,5 @@ def column_units(
 
 
 def _unit_error(form: TableForm, heading: str, column: str, row: int, allowed: Message, action: Message) -> Problem:
+    """Error for a heading with another unit than its column."""
     return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)

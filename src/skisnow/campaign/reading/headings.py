@@ -49,6 +49,7 @@ class Headings:
 
 
 def _entry(entries: Mapping[str, Mapping[str, str]], form: TableForm, heading: str) -> str:
+    """Entry for a heading, first of its table, then of all tables; "" without one."""
     plain = plain_heading(heading)
     return next((entries[file][plain] for file in (form.file, "") if plain in entries.get(file, {})), "")
 

@@ -105,6 +105,7 @@ def _check_angles(table: Table, blocks: Blocks, described: CampaignFile | None) 
 
 
 def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
+    """First chosen row of each block of rows."""
     rows = np.flatnonzero(chosen)
     _, first = np.unique(blocks.of_row[rows], return_index=True)
     numbers: list[int] = rows[first].tolist()
@@ -212,12 +213,14 @@ def _unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
 
 
 def _median(table: Table, name: str) -> float | None:
+    """Median of a column's values above 0, in its unit; None if there are none."""
     values = table.numbers.get(name, np.zeros(0))
     above_zero = values[values > 0]
     return float(np.median(above_zero)) if len(above_zero) else None
 
 
 def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
+    """Warning that a column's median suggests another unit than `likely`."""
     allowed = Message(
         "numbers in {unit}; medians of {low:g} to {high:g} are usual",
         unit=likely.unit,
@@ -235,6 +238,7 @@ def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float
 
 
 def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
+    """Warning for the first of some rows that are far from the column's median, with the number of others."""
     value = table.numbers[name][rows[0]]
     more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
     allowed = Message(
@@ -325,6 +329,7 @@ def _lever_arms(table: Table) -> Iterator[Problem]:
 
 
 def _missing_unit(table: Table, column: str, values: str, unit: str, row: int = 0) -> Problem:
+    """Error for a column whose unit is not stated, with the likely unit and where to write it."""
     heading = table.unstated[column]
     line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
     allowed = Message("numbers whose unit is stated")

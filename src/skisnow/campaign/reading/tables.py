@@ -90,6 +90,7 @@ def table_of_cells(form: TableForm, cells: Cells, files: RawFiles) -> Table | No
 
 
 def _empty_error(form: TableForm, what: str) -> Problem:
+    """Error for a table without header or rows; `what` is the value it shows."""
     action = Message("Fill the file, or remove it from the campaign.")
     return error("empty_file", form.file, value=what, allowed=Message("a header and at least one row"), action=action)
 
@@ -215,6 +216,7 @@ def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
 
 
 def _separator_and_mark_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
+    """Notes, which need no action, about a separator other than a comma and about decimal commas."""
     deviations = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
     for value in deviations:
         allowed = Message("commas between cells and decimal points, in the plain form")

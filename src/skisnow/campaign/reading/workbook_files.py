@@ -96,6 +96,7 @@ def is_workbook(name: str) -> bool:
 
 
 def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
+    """Unfold a workbook's sheets into the campaign's files; an unreadable workbook becomes a problem."""
     try:
         data = workbooks.files.read(workbook)
         if data is None:
@@ -116,6 +117,7 @@ def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
 
 
 def _assign_sheets(workbooks: UnfoldedFiles, workbook: str, sheets: Mapping[str, Rows]) -> None:
+    """Turn sheets into campaign.toml and tables; a second sheet of a table is a problem, others stay unread."""
     describing: dict[str, Rows] = {}
     for title, rows in sheets.items():
         kind = _kind(title)
@@ -201,6 +203,7 @@ def _records(rows: Rows) -> Iterator[Mapping[str, str]]:
 
 
 def _toml_line(key: str, cell: str) -> str:
+    """TOML line of a key and a cell's text; a list is separated by semicolons."""
     if key in _LISTS:
         several = ", ".join(_value(item) for item in re.split(r"\s*;\s*", cell) if item)
         return f"{toml_text(key)} = [{several}]"

@@ -238,6 +238,7 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
 
 
 def _csv(header: Sequence[str], columns: Iterable[Sequence[str]]) -> str:
+    """Text of a CSV file from a header and columns of texts."""
     return csv_text([header, *zip(*columns, strict=True)])
 
 
@@ -247,6 +248,7 @@ def _number_texts(values: FloatArray, unit: float, decimals: int) -> list[str]:
 
 
 def _penetration_csv(drawn: ReferenceCampaign) -> str:
+    """Text of penetration.csv with loading and unloading readings in the order of their rows."""
     tests, unloading = drawn.penetration, drawn.penetration.unloading
     header = ("experiment", "site", "spot", "tool", "edge_angle_deg", "load_N", "depth_mm", "branch")
     row, load, depth = tests.row, tests.load, tests.penetration_depth
@@ -268,6 +270,7 @@ def _penetration_csv(drawn: ReferenceCampaign) -> str:
 
 
 def _shear_csv(drawn: ReferenceCampaign) -> str:
+    """Text of shear.csv; with turning angles it has one row per angle instead of one per test."""
     tests = drawn.shear
     header: tuple[str, ...] = (
         "experiment", "site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm",
@@ -291,6 +294,7 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
 
 
 def _campaign_toml(drawn: ReferenceCampaign) -> str:
+    """Text of campaign.toml: a comment with seed and noise model, and the keys of the campaign."""
     noise = drawn.noise
     tool = design.SKI_PIECE
     hard, soft, about_density = (

@@ -246,6 +246,7 @@ def _gauge_reading(depth: FloatArray, seating_offset: FloatArray, noise: Referen
 
 
 def _round_to_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
+    """Depths (m) rounded to the steps of the gauge; unchanged for a resolution of 0."""
     if noise.gauge_resolution == 0:
         return depth
     steps = np.rint(depth / noise.gauge_resolution)
@@ -256,6 +257,7 @@ def _round_to_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
 def _shear_stress(
     generator: np.random.Generator, angle: FloatArray, density: FloatArray, noise: ReferenceNoise
 ) -> FloatArray:
+    """Drawn failure shear stress S_f (Pa) of the hard tests, the soft ones and those by density, in this order."""
     hard = np.full(design.HARD_TESTS, design.HARD_SHEAR_STRESS)
     soft = failure_shear_stress_from_angle(angle[design.HARD_TESTS :][: design.SOFT_TESTS])
     further = failure_shear_stress_from_density(density)
@@ -270,12 +272,15 @@ def _shear_stress(
 
 
 def _numbered_names(letter: str, count: int) -> tuple[str, ...]:
+    """Names such as P001, from 1 to `count`."""
     return tuple(f"{letter}{number:03d}" for number in range(1, count + 1))
 
 
 def _row_numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+    """Line numbers of `count` rows in a file; the first is 2."""
     return np.arange(2, count + 2, dtype=np.int64)  # the header is line 1
 
 
 def _spot_name(site: design.Site, index: int) -> str:
+    """Name of a site's spot, such as C01; "" if the index is beyond its spots."""
     return f"{site.name[-1]}{index + 1:02d}" if index < site.spots else ""

@@ -115,6 +115,7 @@ class Conflict:
         return self._lines(self.entries_there, self.uid_there)
 
     def _lines(self, entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> list[str]:
+        """One line per entry: who, when, and what was done."""
         by_uid = {entry.uid: entry for entry in (*self.common, *self.entries)}
         subjects = [(entry, by_uid.get(uids.get(entry.about or 0, ""))) for entry in entries]
         return [f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}" for entry, about in subjects]
@@ -128,6 +129,7 @@ class Conflict:
 
 
 def _entry_counts(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> Counter[tuple[object, ...]]:
+    """Number of entries with the same action, subject, cells and reason, whatever their number in the journal."""
     return Counter(
         (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why) for entry in entries
     )
@@ -164,6 +166,7 @@ def _new_cells(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict
 
 
 def _entry_words(entry: JournalEntry, about: JournalEntry | None) -> str:
+    """English words for an entry's action; `about`: the entry that it corrects or takes back, if known."""
     if entry.action == "describe":
         return f"described the campaign: {_shorten_text(entry.cells[DESCRIPTION])}"
     if entry.action == "cancel":
@@ -186,6 +189,7 @@ def _correction_words(key: str, text: str, about: JournalEntry | None) -> str:
 
 
 def _shorten_text(text: str) -> str:
+    """Text in one line, cut with "…" at the maximum length."""
     words = " ".join(text.split())
     return words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…"
 

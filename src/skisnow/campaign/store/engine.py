@@ -81,6 +81,7 @@ def _file_reason(error: BaseException, path: Path) -> str:
 
 
 def _find_damage(path: Path) -> str | None:
+    """First damage of a store's file; None without one, and also if SQLite cannot read the file."""
     with suppress(sqlite3.Error), closing(connect(path, mode="ro")) as database:
         return first_damage(database)
     return None
@@ -126,6 +127,7 @@ def open_engine(place: Path, *, create: bool, busy_timeout_s: float) -> Engine:
 
 
 def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+    """Engine of a store's file, with tables if it is new; read-only folders are allowed; rejects another schema."""
     engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
     try:
         revision = _revision(engine, path)
@@ -164,6 +166,8 @@ def _require_tables(engine: Engine, path: Path) -> None:
 
 
 def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
+    """SQLAlchemy engine whose connections use foreign keys, full synchronisation and skisnow's own BEGIN."""
+
     def open_file() -> sqlite3.Connection:
         connection = connect(path, mode=mode, timeout_s=busy_timeout_s)
         try:
@@ -197,10 +201,12 @@ def _revision(engine: Engine, path: Path) -> int | None:
 
 
 def _is_empty(connection: Connection) -> bool:
+    """True if the database has no tables."""
     return not connection.exec_driver_sql("SELECT count(*) FROM sqlite_master WHERE type = 'table'").scalar_one()
 
 
 def _create_tables(engine: Engine, busy_timeout_s: float) -> None:
+    """Create the tables and write the schema's revision, unless another process already did."""
     _use_write_ahead_log(engine, busy_timeout_s)
     with writing(engine) as connection:
         if _is_empty(connection):  # otherwise another process was faster

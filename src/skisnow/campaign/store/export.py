@@ -150,6 +150,7 @@ def with_rows(before: bytes, file: str, columns: Sequence[str], rows: Iterable[M
 
 
 def _parse_records(data: bytes, file: str) -> list[list[str]]:
+    """Rows of cells of a CSV file; a StoreError if it cannot be read."""
     try:
         return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:

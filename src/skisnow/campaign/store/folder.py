@@ -114,6 +114,7 @@ def campaign_name(folder: Path) -> str:
 
 
 def _read_description(folder: Path) -> bytes:
+    """Bytes of campaign.toml, which may also be sheets of a workbook; empty if there is none."""
     place = folder / DESCRIPTION
     if place.exists():
         return plain_bytes(place, most_bytes=MOST_TOML_BYTES)
@@ -147,6 +148,7 @@ def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
 
 
 def _require_safe(path: str, *, for_windows: bool) -> None:
+    """Reject a path that is not safe to import or export on this system, or on Windows if `for_windows`."""
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
         raise StoreError("The file {path} cannot be imported or exported: {why}; rename it.").tag(
             "unsafe_name", path=_printable(path), why=why
@@ -154,6 +156,7 @@ def _require_safe(path: str, *, for_windows: bool) -> None:
 
 
 def _printable(path: str) -> str:
+    """The path with surrogates, from undecodable bytes, as escapes."""
     return path.encode(errors="backslashreplace").decode()
 
 

@@ -110,6 +110,7 @@ class Journals:
         return self._entries_after(id, after, _STORED)
 
     def _entries_after(self, id_: str, after: int, ids: Select[Any]) -> tuple[JournalEntry, ...]:
+        """Entries of a campaign after number `after`, in the order of their UIDs; rejects an unknown id."""
         with database_errors(self._path, "not_read"), reading(self._engine) as connection:
             _require_id(connection, ids, id_)
             query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
@@ -162,6 +163,7 @@ class Journals:
 
 
 def _journal_head(name: str, id_: Any, begun_at: Any, n_entries: Any, last_at: Any) -> JournalHead:
+    """Head of a campaign in entry from columns of the database; a damage error if one has another type."""
     try:
         require_type(n_entries, int)
         for text in (id_, begun_at, last_at):
@@ -180,6 +182,7 @@ def _require_id(connection: Connection, ids: Select[Any], id_: str) -> None:
 
 
 def _is_about_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
+    """SQL condition: the entry is in this campaign and about the same test."""
     columns = journal_entry.c
     return and_(columns.journal_id == id_, columns.file == entry.file, columns.test == entry.test)
 

@@ -118,6 +118,7 @@ def replay_journal(entries: Iterable[JournalEntry], *, before: ReplayedCampaign 
 
 
 def _replay_test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
+    """State of one test after its entries, oldest first; undone entries have no effect."""
     test = ReplayedTest(*key, history=history)
     for entry in reversed(history):  # an undoing can be undone
         if entry.action == "undo" and entry.about is not None and entry.sequence not in test.undone:
@@ -216,6 +217,7 @@ def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]
 
 
 def _table_columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:
+    """Columns of a table that the tests use or that are required, in the form's order."""
     rows = [row for test in tests for row in test.rows]
     present = {column for row in rows for column in row.entered.cells} | {_TIME}
     present |= {column for row in rows for correction in row.corrections for column in correction.cells}
@@ -229,6 +231,7 @@ def _row_cells(at: str, cells: Mapping[str, str], columns: Sequence[str]) -> lis
 
 
 def _applied_corrections(tests: Sequence[ReplayedTest]) -> Iterator[AppliedCorrection]:
+    """Corrections and cancellations of cells in the order of the table's lines."""
     line = 1  # the header
     for test in tests:
         if test.cancelling is not None:

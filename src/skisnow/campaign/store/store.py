@@ -102,6 +102,7 @@ class Store(Shown):
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
 
     def _repr_facts(self) -> Facts:
+        """Path of the store, for the representation."""
         return Facts(f"at {self.path}")
 
     def close(self) -> None:
@@ -147,6 +148,7 @@ class Store(Shown):
         return AddedCampaign(**fields, already_stored=not is_new, n_repaired=n_repaired, check_failure=failure)
 
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
+        """Files below a folder; rejects no folder, an empty one, and one that contains the store itself."""
         if not folder.is_dir():
             raise StoreError("{folder} is not a folder; name the folder with the campaign's files.").tag(
                 "no_folder", folder=folder

@@ -72,6 +72,7 @@ def cell_of(key: str) -> tuple[int, str]:
 
 
 def _stored_table(files: RawFiles, form: TableForm) -> StoredTable | None:
+    """Table with its corrections, cells by test and line; None if it is missing or has no column of tests."""
     text = files.csv_text(form)
     if text is None:
         return None
@@ -151,6 +152,7 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
 
 
 def _checked_number_text(rule: Quantity, text: str, conversion: UnitConversion) -> str:
+    """Entered number with a decimal point; CellError if it is missing, not a number or out of limits."""
     if not text and not rule.needed:
         return ""
     text = text.replace("−", "-")

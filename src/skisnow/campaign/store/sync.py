@@ -91,6 +91,7 @@ class _Sync:
         self._problems: list[str] = []
 
     def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> SyncResult:
+        """Settle the chosen conflicts, copy what each store lacks, and return counts and open conflicts."""
         with database_errors(self._there.path, "not_synchronised"):
             n_settled = self._settle_conflicts(chosen, who)
             to_there, to_here = (self._here, self._there), (self._there, self._here)
@@ -105,6 +106,7 @@ class _Sync:
             )
 
     def _copy_campaigns(self, source: Store, to: Store) -> int:
+        """Copy missing campaigns with their files; returns their number and records damaged ones as problems."""
         with reading(to.engine) as connection:
             held = campaign_rows(connection)
         n_taken = 0
@@ -165,11 +167,13 @@ class _Sync:
         return len(choices)
 
     def _find_conflicts(self) -> tuple[Conflict, ...]:
+        """Conflicts that are still open, with the names of their campaigns."""
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             open_ = list(self._open_conflicts(here, there))
             return tuple(replace(conflict, name=_name(here, conflict.campaign)) for conflict in open_)
 
     def _open_conflicts(self, here: Connection, there: Connection) -> Iterator[Conflict]:
+        """Open conflicts of all campaigns in entry that both stores have; damaged ones become problems."""
         for id_ in shared_journals(here, there):
             with self._collect_damage(id_):
                 yield from list(open_conflicts(here, there, id_))
@@ -253,6 +257,7 @@ def settle(here: Connection, there: Connection, conflict: Conflict, side: Side, 
 
 
 def _undo_entries(here: Connection, conflict: Conflict, numbers: Iterable[int], why: str, who: str) -> None:
+    """Undo a test's entries with these sequence numbers, last one first, with a reason."""
     file, test = conflict.file, conflict.test
     for number in sorted(numbers, reverse=True):
         entry = NewEntry(action="undo", file=file, test=test, about=number, who=who, why=why)

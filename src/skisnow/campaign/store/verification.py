@@ -41,6 +41,7 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
 
 
 def _database_damage(connection: Connection) -> Iterator[Finding]:
+    """Findings of SQLite's own checks of integrity and foreign keys."""
     for message in connection.exec_driver_sql("PRAGMA integrity_check").scalars():
         if message != "ok":
             yield Finding(None, None, f"SQLite's integrity check: {message}")
@@ -49,6 +50,7 @@ def _database_damage(connection: Connection) -> Iterator[Finding]:
 
 
 def _content_damage(connection: Connection, progress: Progress) -> Iterator[Finding]:
+    """Findings for files whose bytes no longer have their SHA-256, for each campaign that uses them."""
     rows = connection.execute(select(content.c.sha256, content.c.size)).all()
     done, total = 0, sum(size for _, size in rows if isinstance(size, int))
     for sha256, size in rows:
@@ -63,6 +65,7 @@ def _content_damage(connection: Connection, progress: Progress) -> Iterator[Find
 
 
 def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
+    """True if stored bytes have this SHA-256 and size; False also if they cannot be read."""
     try:
         return isinstance(sha256, str) and is_sound(connection, sha256, size)
     except (DatabaseError, UnicodeDecodeError):  # the pages that hold it are broken; other files may be whole
@@ -70,10 +73,12 @@ def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
 
 
 def _text_or_repr(value: object) -> str | None:
+    """A text or None unchanged, any other value by its repr."""
     return value if value is None or isinstance(value, str) else repr(value)
 
 
 def _find_damaged_campaigns(connection: Connection) -> Iterator[Finding]:
+    """Findings for unreadable campaigns, changed lists of files and unsafe paths."""
     for row in connection.execute(select(campaign)).all():
         try:
             stored = stored_campaign(connection, row)
@@ -139,4 +144,5 @@ def _entry_damage(connection: Connection, row: _Row) -> str:
 
 
 def _utf8(data: bytes | None) -> str:
+    """Text of UTF-8 bytes, with invalid ones replaced; "" for None."""
     return "" if data is None else data.decode(errors="replace")
