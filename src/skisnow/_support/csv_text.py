@@ -62,12 +62,14 @@ def decode(data: bytes) -> DecodedText:
 
 
 def _refuse_control_characters(data: bytes) -> None:
+    """Reject bytes with a large share of control characters, as a binary file has."""
     control = len(data) - len(data.translate(None, _CONTROL_BYTES))
     if control > _CONTROL_SHARE * len(data):
         raise _binary_error(f"{control} control characters among {len(data)} bytes")
 
 
 def _binary_error(value: str) -> UnreadableTextError:
+    """Error that a file looks binary; `value` is the sign of it."""
     return UnreadableTextError(
         value=value,
         allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252"),
@@ -105,6 +107,7 @@ class CsvText:
             yield lines, rows
 
     def _read_blocks(self, most_lines: int | None) -> Iterator[Records]:
+        """Line numbers and cells of rows in blocks, without blank rows; rejects a quote that is not closed."""
         stream = io.TextIOWrapper(io.BytesIO(self.data), encoding=self.codec, newline="")
         skipped = len(stream.readline()[:1]) if self.separator_line else 0
         reader = csv.reader(chain(stream, (_END,)), delimiter=self.separator, skipinitialspace=True)
@@ -136,6 +139,7 @@ class CsvText:
 
 
 def _require_size(lines: list[int], rows: list[list[str]]) -> None:
+    """Reject a row with too many cells or a cell with too many characters."""
     if max(map(len, rows), default=0) > MOST_COLUMNS:
         line, count = next(
             (line, len(cells)) for line, cells in zip(lines, rows, strict=True) if len(cells) > MOST_COLUMNS
@@ -159,6 +163,7 @@ def _require_size(lines: list[int], rows: list[list[str]]) -> None:
 
 
 def _quote_error(line: int, value: str) -> UnreadableTextError:
+    """Error for a quote, opened in this line, that is not closed, or a cell beyond the limit."""
     return UnreadableTextError(
         row=line,
         value=value,

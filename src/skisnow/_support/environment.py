@@ -51,8 +51,9 @@ def load_certificate(context: ssl.SSLContext, file: str | Path, key: str | Path 
     Raises OSError, ssl.SSLError or ValueError: the files cannot be read, or the key has a password: OpenSSL would ask
         for it on the terminal.
     """
-    context.load_cert_chain(file, key, password=_no_password)
+    context.load_cert_chain(file, key, password=_reject_password)
 
 
-def _no_password() -> str:
+def _reject_password() -> str:
+    """Password callback of OpenSSL: raise ValueError instead of asking on the terminal."""
     raise ValueError("the private key has a password")

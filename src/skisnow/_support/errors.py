@@ -93,6 +93,7 @@ class FieldDataError(SkisnowError):
         return self._shown_problems([getattr(problem, "sentence", problem) for problem in self.problems])
 
     def _shown_problems(self, problems: Sequence[object]) -> list[object]:
+        """The first problems up to the limit, then a line with the number of the others."""
         more = len(problems) - self.SHOWN
         rest = [count_message("… and {count} more problem", "… and {count} more problems", count=more)]
         return [*problems[: self.SHOWN], *(rest if more > 0 else [])]

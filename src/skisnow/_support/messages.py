@@ -138,6 +138,7 @@ def local_number(text: str) -> str:
 
 
 def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Message:
+    """Message in English whose template, plural and fields are kept for translation."""
     fields = {name: _plain(value) for name, value in fields.items()}
     message = str.__new__(Message, _translate_and_fill(template, plural, fields, ENGLISH))
     message.template, message.plural, message.fields = template, plural, fields
@@ -159,6 +160,7 @@ def _plain(value: Any) -> Any:
 
 
 def _translate_and_fill(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
+    """Text of a template in a language; with a plural, the form fits the field `count`."""
     words = translations(language)
     if plural is not None:
         template = words.ngettext(template, plural, fields["count"])
@@ -169,6 +171,7 @@ def _translate_and_fill(template: str, plural: str | None, fields: dict[str, Any
 
 @cache
 def _formatter(language: str) -> LocalFormatter:
+    """Formatter of a language, the same object for each call."""
     return LocalFormatter(language)
 
 
@@ -180,6 +183,7 @@ class LocalFormatter(Formatter):
         self._sign = decimal_sign(language)
 
     def format_field(self, value: Any, format_spec: str) -> str:
+        """Text of a field in this language: a message, number, date or list of them by local rules."""
         if callable(getattr(type(value), "text", None)):
             return format(value.text(self._language), format_spec)
         if isinstance(value, bool):
@@ -193,6 +197,7 @@ class LocalFormatter(Formatter):
         return format(value if isinstance(value, str) or format_spec else str(value), format_spec)
 
     def _format_number(self, value: Any, spec: str) -> str:
+        """Number with the decimal sign, minus and percent of the language; 12 digits without a format."""
         text = format(value, spec or ("" if isinstance(value, int) else ".12g"))
         if text.startswith("-") and ("+" in spec or spec[:1] == "-" or self._language != ENGLISH):
             text = f"−{text[1:]}"
@@ -201,12 +206,14 @@ class LocalFormatter(Formatter):
         return text.translate({ord("."): self._sign, ord(","): ".", ord("%"): "\N{NO-BREAK SPACE}%"})
 
     def _format_list(self, values: Any, spec: str) -> str:
+        """Items separated by commas, or semicolons if numbers have commas; brackets for a tuple of numbers."""
         items = [self.format_field(value, spec) for value in values]
         numbers = all(isinstance(value, Real) for value in values)
         text = ("; " if numbers and any("," in item for item in items) else ", ").join(items)
         return f"[{text}]" if numbers and isinstance(values, tuple) else text
 
     def _format_date(self, value: date) -> str:
+        """Date with the month's name in English and its number in German; with the time if it has one."""
         month = f" {_MONTHS[value.month - 1]} " if self._language == ENGLISH else f". {value.month}. "
         return f"{value.day}{month}{value.year}" + (f", {value:%H:%M}" if isinstance(value, datetime) else "")
 

@@ -142,6 +142,7 @@ def decimal_mark(groups: Iterable[Iterable[str]], *, separator: str) -> str:
 
 
 def _count_numbers_with(cells: Iterable[str], mark: str) -> int:
+    """Number of cells that are a number with `mark` as its decimal sign in it."""
     return sum(mark in cell and is_number(cell.strip(), mark) for cell in cells)
 
 
@@ -285,6 +286,7 @@ def _parse_rows(
     mark: str,
     first: int,
 ) -> Iterator[CsvRow]:
+    """Rows below the header, without blank ones; rejects missing or repeated columns and cells beyond the header."""
     head = column_names(next(lines, []), (*columns, *further))
     missing = [name for name in columns if name not in head]
     if missing:

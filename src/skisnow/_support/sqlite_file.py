@@ -45,6 +45,7 @@ def connect(place: Path | None, *, mode: Mode = "rwc", timeout_s: float = 0.0) -
 
 
 def _sqlite_uri(place: Path, mode: Mode) -> str:
+    """URI of a file for SQLite with its mode of access."""
     name = quote(os.fsencode(place.absolute().as_posix()))
     return f"file://{'' if name.startswith('/') else '/'}{name}?mode={mode}"
 

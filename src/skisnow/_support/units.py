@@ -104,6 +104,7 @@ def without_unit(name: str) -> str:
 
 @cache
 def _unit_ending(name: str) -> str:
+    """Known unit at the end of a name, without the underscore; "" without one."""
     name = name.partition("[")[0]  # unit of each item of a list
     return next((ending for ending in _BY_ENDING if name.endswith(f"_{ending}")), "")
 
@@ -189,6 +190,7 @@ class ShownFields(Shown):
     __slots__ = ()
 
     def _repr_facts(self) -> Facts:
+        """Facts of all fields, for the representation."""
         return field_facts(self, {})
 
 
@@ -254,6 +256,7 @@ def name_with_values(thing: object) -> str:
 
 
 def _short_text(value: Any, unit: str) -> str:
+    """Short text of a value: size and range of an array, type of a dataclass, number with unit, count or text."""
     if hasattr(value, "dtype") and hasattr(value, "shape"):  # an array, without loading NumPy
         size = " × ".join(map(str, value.shape))
         return f"{size}: {ends(value, unit)}" if value.dtype.kind in "fiu" and value.size else size
@@ -268,6 +271,7 @@ def _short_text(value: Any, unit: str) -> str:
 
 
 def _limit_rows(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+    """The rows up to the maximum; the names of further ones share the last row."""
     if len(rows) <= MOST_ROWS:
         return rows
     rest = ", ".join(name for name, _ in rows[MOST_ROWS - 1 :])
@@ -275,5 +279,6 @@ def _limit_rows(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...
 
 
 def _clip(line: str) -> str:
+    """Text in one line, cut with "…" at the maximum width."""
     plain = " ".join(line.split("\n"))
     return plain if len(plain) <= _WIDEST else f"{plain[: _WIDEST - 1]}…"

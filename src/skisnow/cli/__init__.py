@@ -93,6 +93,7 @@ def _report_end(error: Exception | KeyboardInterrupt) -> int:
 
 
 def _print_error(error: SkisnowError | MemoryError) -> None:
+    """Print an error on standard error: one line per problem of field data, otherwise one sentence."""
     if isinstance(error, FieldDataError):
         from ..campaign.problems import Problem, lines_of
 

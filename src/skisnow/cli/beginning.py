@@ -59,7 +59,7 @@ def add_reference(commands: argparse._SubParsersAction[argparse.ArgumentParser])
 
 
 def write_reference(options: argparse.Namespace) -> int:
-    """Write the files of a synthetic campaign and print their paths."""
+    """Write a synthetic campaign and print its seed and folder; returns the exit status."""
     from ..campaign import reference
 
     reference.write_reference(

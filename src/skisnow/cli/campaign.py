@@ -61,6 +61,7 @@ def _find_problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
 
 
 def _count_of_severity(problems: list[Problem], severity: str) -> int:
+    """Number of problems of this severity."""
     return sum(problem.severity == severity for problem in problems)
 
 
@@ -183,6 +184,7 @@ def import_file(options: argparse.Namespace) -> int:
 
 
 def _read_answers(options: argparse.Namespace) -> Answers:
+    """Answers of the options, which override those of the template."""
     from ..campaign.importing.answers import Answers, read_template
 
     from_options = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
@@ -203,6 +205,7 @@ def _ask_questions(options: argparse.Namespace, answers: Answers, *, asks: bool)
 
 
 def _ask_in_terminal(question: Question) -> str:
+    """Answer that the user types to a question; an empty line takes the proposal, if there is one."""
     print(question.problem.message)
     if question.choices:
         print(f"  choices: {', '.join(question.choices)}")
@@ -226,6 +229,7 @@ def preview_lines(proposal: Proposal) -> list[str]:
 
 
 def _hardness_lines(proposal: Proposal) -> list[str]:
+    """Line with H_V (N/mm³) of a proposed campaign's first series; an empty list without one."""
     from ..campaign.reading.campaign import campaign_of_files
     from ..estimation.result_rows import first_hardness
 

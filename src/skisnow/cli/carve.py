@@ -43,6 +43,7 @@ def add_carve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 
 def _add_question(parser: argparse.ArgumentParser) -> None:
+    """Add the options for skis, edge angle, load and moment."""
     named: dict[str, Any] = {"action": "append", "required": True, "metavar": "NAME|FILE"}
     parser.add_argument("--ski", **named, help="a ski of the catalogue or a ski file; several times to compare")
     angle = "angle of the base under the boot to the snow, 0 to 85"
@@ -55,6 +56,7 @@ def _add_question(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_snow(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the snow."""
     snow = parser.add_argument_group("snow")
     snow.add_argument("--H-V-N-per-mm3", type=number("N/mm³"), metavar="H_V", help="snow hardness")
     stress = "failure shear stress; beside --results or --published only where those have none"
@@ -67,6 +69,7 @@ def _add_snow(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_choices(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the model's choices and for changes of the ski."""
     choices = parser.add_argument_group("modelling choices; those in force are printed with the answer")
     choices.add_argument(
         "--clamp-length-m", type=number("m"), metavar="M", help="length that boot and binding keep straight"
@@ -134,6 +137,7 @@ def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
 
 
 def _exit_status(answers: list[CarveAnswer]) -> int:
+    """1, after a message on standard error, if an answer did not converge; otherwise 0."""
     lost = [answer.question.ski for answer in answers if answer.equilibrium.outcome == "not_converged"]
     if lost:
         print(
@@ -144,6 +148,7 @@ def _exit_status(answers: list[CarveAnswer]) -> int:
 
 
 def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
+    """Answers of carve for each ski that the options name."""
     from ..carving.answer import answer_question
     from ..carving.question import CARVE_KEYS, carve_question
 
@@ -226,6 +231,7 @@ def _front(options: argparse.Namespace, task: DesignTask) -> int:
 
 
 def _design_summary(design: Design) -> str:
+    """Text of a design for the terminal: variables, outputs before and after, optima, remarks."""
     names = (Message("before"), Message("design"), Message("change %"), Message("rounded"))
     before, after, change, rounded = map(str, names)
     condition, output = str(Message("condition")), str(Message("output"))
@@ -243,4 +249,5 @@ def _design_summary(design: Design) -> str:
 
 
 def _number(value: float | None, form: str = "11.6g") -> str:
+    """A number in the form `form`, or spaces of the same width for None."""
     return " " * int(form.partition(".")[0]) if value is None else local_number(f"{value:{form}}")

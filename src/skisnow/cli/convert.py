@@ -56,6 +56,7 @@ def add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
+    """Add the subcommand ``fmu``."""
     fmu = kinds.add_parser(
         "fmu",
         help="a functional mock-up unit for co-simulation",
@@ -76,6 +77,7 @@ def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
 
 
 def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
+    """Add the subcommand ``mjcf``."""
     mjcf = kinds.add_parser(
         "mjcf",
         help="a ski for MuJoCo",
@@ -90,6 +92,7 @@ def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
 
 
 def _write_fmu(options: argparse.Namespace) -> int:
+    """Write the FMU of a scenario, or of its contact alone, and print its path; returns 0."""
     if options.skis is not None and not options.contact:
         options.parser.error("--skis goes with --contact: a sledge has two")
     from ..interop import write_contact_fmu, write_sledge_fmu
@@ -104,6 +107,7 @@ def _write_fmu(options: argparse.Namespace) -> int:
 
 
 def _write_mjcf(options: argparse.Namespace) -> int:
+    """Write a ski as MJCF and print its path; returns 0."""
     from ..interop.mujoco import write_ski_mjcf
     from ..ski import read_ski
 

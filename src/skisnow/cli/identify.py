@@ -59,6 +59,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _add_methods(parser: argparse.ArgumentParser) -> None:
+    """Add the options for intervals, searches, clocks and processes."""
     profile = "also intervals by refitting all others along each parameter"
     parser.add_argument("--profile", action="store_true", help=profile)
     bootstrap = "also intervals by N resamples of the residuals, 40 or more"
@@ -109,6 +110,7 @@ def _prepare(options: argparse.Namespace) -> ScenarioFile:
 
 
 def _identify(options: argparse.Namespace) -> Identification:
+    """Result of the identification by the command's options, with progress shown."""
     import numpy as np
 
     from ..identification import identify
@@ -145,6 +147,7 @@ def _with_fall_line(options: argparse.Namespace) -> ScenarioInput:
 
 
 def _write_and_print(options: argparse.Namespace, result: Identification, scenario_input: ScenarioFile) -> None:
+    """Print warnings and the summary or JSON of an identification, and write its report if --out is given."""
     from ..identification import identification_dict
 
     contents = identification_dict(result, files=(*scenario_input.files, *options.data))

@@ -156,10 +156,12 @@ class Ending:
     _later: bool = False
 
     def _interrupt(self, *_: Any) -> None:
+        """Signal handler: record the request and raise Ended."""
         self.requested = True
         raise Ended
 
     def _record_request(self, number: int, _: Any) -> None:
+        """Signal handler in `finishing`: record the first request and go on; a second one raises."""
         by_system = number == signal.SIGTERM
         self.requested, self.pressed = self.requested or by_system, self.pressed or not by_system
         if self._later:

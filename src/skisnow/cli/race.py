@@ -58,6 +58,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _add_search(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the search, its windows and its start."""
     parser.add_argument(
         "--evaluations", type=whole_number(1, MOST_EVALUATIONS), default=300, metavar="N",
         help="after which no new batch begins, of each window; 1: only the line that it begins from; default: 300",
@@ -90,6 +91,7 @@ def _add_search(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_comparison_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that compare skis, worths and drawn snows."""
     parser.add_argument(
         "--against", action="append", default=[], metavar="SKI", help="another ski on the same line, by name or file"
     )
@@ -175,6 +177,7 @@ def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[
 
 
 def _read_start_line(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None:
+    """Racing line of --line, for the scenario's course and start; None without the option."""
     from ..racing import read_line
     from ..racing.line import course_of
 

@@ -98,6 +98,7 @@ def candidates(parser: argparse.ArgumentParser, words: Sequence[str], begun: str
 
 
 def _positionals(parser: argparse.ArgumentParser) -> list[argparse.Action]:
+    """Positional arguments of a parser."""
     return [action for action in parser._actions if not action.option_strings]
 
 

@@ -78,6 +78,7 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
 
 
 def _simulate(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
+    """Run of a scenario, and its refinements if `verify`; None without them or if the run was interrupted."""
     from ..simulation.simulated_run import simulate
 
     with Progress() as progress, warnings.catch_warnings():
@@ -89,6 +90,7 @@ def _simulate(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple
 
 
 def _verify(result: Run, progress: Progress) -> tuple[Refinement, ...]:
+    """Refinements of a run: repetitions with finer settings, each with its progress."""
     from ..simulation.simulated_run import simulate
     from ..simulation.verification import repetitions, verify
 
@@ -103,6 +105,7 @@ def _verify(result: Run, progress: Progress) -> tuple[Refinement, ...]:
 def _write_and_print(
     options: argparse.Namespace, scenario_input: ScenarioFile, result: Run, refinements: tuple[Refinement, ...] | None
 ) -> None:
+    """Print the summary or JSON of a run and its warnings, and write boots and report as the options say."""
     from ..simulation.run_summary import run_warnings, summary_dict
     from ..simulation.verification import limit_warnings, verification_dict
 
@@ -142,6 +145,7 @@ def _write_joints(run: Run, boots: Path) -> None:
 
 
 def _write_run(options: argparse.Namespace, result: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
+    """Write a run's folder and, if a title is given, its replay; print their paths on standard error."""
     from ..report.run.page import REPLAY, write_run
 
     folder: Path = options.out
@@ -217,6 +221,7 @@ def add_turn(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
 
 
 def _add_ensemble(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the ensemble: unloading ratio, runs, ranges, seed and processes."""
     parser.add_argument(
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),

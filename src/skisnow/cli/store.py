@@ -55,6 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def _add_sync(add_parser: Callable[..., argparse.ArgumentParser], every: argparse.ArgumentParser) -> None:
+    """Add the subcommand ``sync``."""
     syncing = add_parser(
         "sync",
         parents=[every],
@@ -84,6 +85,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _add(store: Store, args: argparse.Namespace) -> Answer:
+    """Add a campaign's folder to the store; JSON, text and exit status."""
     with _percent_printed("keeping") as progress:
         added = store.add(args.folder, progress=progress)
     if added.check_failure is not None:
@@ -100,6 +102,7 @@ def _add(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _list(store: Store, _: argparse.Namespace) -> Answer:
+    """List stored campaigns and those in entry; JSON, text and exit status."""
     from ..campaign.store import Journals
 
     stored, entered = store.list(), Journals(store).list()
@@ -109,6 +112,7 @@ def _list(store: Store, _: argparse.Namespace) -> Answer:
 
 
 def _show(store: Store, args: argparse.Namespace) -> Answer:
+    """Show a campaign and its files; JSON, text and exit status."""
     from ..campaign.store import JournalHead, entered_files, find_campaign
 
     campaign = find_campaign(store, args.id)
@@ -121,6 +125,7 @@ def _show(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export(store: Store, args: argparse.Namespace) -> Answer:
+    """Export a campaign, with its corrections unless --as-added; JSON, text and exit status."""
     from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
 
     campaign = find_campaign(store, args.id)
@@ -138,6 +143,7 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -> Answer:
+    """Export a campaign in entry; rejects --as-added. JSON, text and exit status."""
     from ..campaign.store import export_entered
 
     if args.as_added:
@@ -149,6 +155,7 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
 
 
 def _verify(store: Store, _: argparse.Namespace) -> Answer:
+    """Verify the store; JSON, text and exit status, which is 1 with a finding."""
     with _percent_printed("verifying") as progress:
         findings = store.verify(progress=progress)
     lines = [str(finding) for finding in findings] or ["All is sound."]
@@ -156,6 +163,7 @@ def _verify(store: Store, _: argparse.Namespace) -> Answer:
 
 
 def _sync(store: Store, args: argparse.Namespace) -> Answer:
+    """Synchronise with the group's store; JSON, text and exit status, which is 1 with open conflicts or problems."""
     from ..campaign.store import Store, sync
 
     if not args.group.absolute().parent.is_dir():  # a missing file is created only in an existing folder
@@ -177,6 +185,7 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _parse_choice(text: str) -> tuple[str, Side]:
+    """Conflict (or "all") and side of --keep; an argparse error for another form."""
     id_, _, side = text.partition("=")
     if not id_ or side not in ("here", "there", "both"):
         raise argparse.ArgumentTypeError(f"{text!r} is not ID=here, ID=there or ID=both")
@@ -184,6 +193,7 @@ def _parse_choice(text: str) -> tuple[str, Side]:
 
 
 def _counts_text(n_campaigns: int, n_entries: int) -> str:
+    """Text with the numbers of stored campaigns and entries."""
     campaigns = f"{n_campaigns} stored campaign{'' if n_campaigns == 1 else 's'}"
     return f"{campaigns}, {n_entries} entr{'y' if n_entries == 1 else 'ies'}"
 
@@ -192,21 +202,25 @@ _JSON_NAMES: Final = ("id", "name", "n_files", "n_bytes", "sha256", "n_errors", 
 
 
 def _as_json(stored: StoredCampaign) -> Json:
+    """Values of a stored campaign for JSON."""
     return {"added_at": stored.added_at.isoformat(), **{name: getattr(stored, name) for name in _JSON_NAMES}}
 
 
 def _entered_line(head: JournalHead) -> str:
+    """Line of a campaign in entry: id, begin (UTC), name, number of entries."""
     begun, n = f"{head.begun_at[:10]} {head.begun_at[11:16]}", head.n_entries
     return f"{head.id}  {begun} UTC  {head.name or '(no name)'}: {n} lab entr{'y' if n == 1 else 'ies'}"
 
 
 def _campaign_line(stored: StoredCampaign) -> str:
+    """Line of a stored campaign: id, time of adding (UTC), name, size, results of its check."""
     checked = "not checked" if stored.n_errors is None else f"errors {stored.n_errors}, warnings {stored.n_warnings}"
     amount = _size_text(stored.n_files, stored.n_bytes)
     return f"{stored.id}  {stored.added_at:%Y-%m-%d %H:%M} UTC  {stored.name}: {amount}, {checked}"
 
 
 def _size_text(n_files: int, n_bytes: int) -> str:
+    """Text with the numbers of files and bytes."""
     return f"{n_files} file{'' if n_files == 1 else 's'}, {n_bytes} bytes"
 
 

@@ -61,6 +61,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print_state(study: Study) -> None:
+    """Print, on standard error, that the study is finished already or that another one is in its place."""
     from ..studies import StudyState, study_state
 
     state = study_state(study)
@@ -72,6 +73,7 @@ def _print_state(study: Study) -> None:
 
 
 def _print_outcomes(place: Path, table: StudyTable) -> None:
+    """Print the counts of outcomes, and the first failed and first warned point on standard error."""
     tally = table.tally()
     counts = ", ".join(f"{outcome} {count}" for outcome, count in tally.counts().items())
     print(f"{place}: points {tally.rows} ({counts})")
@@ -86,6 +88,7 @@ def _print_outcomes(place: Path, table: StudyTable) -> None:
 
 
 def _draw_figure(options: argparse.Namespace, table: StudyTable) -> None:
+    """Draw the map of a study into a file and print its path on standard error."""
     from ..report.figures.drawing import write_figure
     from ..report.study_maps import grip_map, radius_map
 

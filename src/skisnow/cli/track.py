@@ -141,6 +141,7 @@ def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 
 def _add_placement(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the azimuth and angle of the slope and the uncertainty of places."""
     add_fall_line_azimuth(parser, "puts a track in latitude and longitude into a simulated run's frame")
     parser.add_argument(
         "--slope-angle-deg",
@@ -192,6 +193,7 @@ def compare(options: argparse.Namespace) -> int:
 
 
 def _compare_tracks(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
+    """Comparison of the two tracks of the options, and the faster one in words if both were computed."""
     from ..comparison.alignment import require_offsets
 
     fit = _estimated_offsets(options)
@@ -238,6 +240,7 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
 def _write_comparison(
     options: argparse.Namespace, comparison: Comparison, answer: dict[str, Any], verdict: Message | None, gaps: Gaps
 ) -> None:
+    """Write the report, figures, gaps (if any) and compare.json of a comparison into the folder --out."""
     from .._support.messages import in_language
     from .._support.staging import staged, write_file
     from ..report.figures.drawing import write_pictures

@@ -113,6 +113,7 @@ def require_effect(thing: Any) -> None:
 
 @cache
 def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
+    """Quantities of a class, and of its nested ones, that have a condition."""
     return tuple(quantity for quantity in quantities(owner) if quantity.condition is not None)
 
 
@@ -175,7 +176,7 @@ def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") 
 
 
 def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
-    """True if new values by name violate a quantity's condition, so that it has no effect."""
+    """True if new values include the key of a quantity's condition and violate it; False without a condition."""
     condition = quantity.condition
     return condition is not None and condition.key in values and not condition.holds(values[condition.key])
 
@@ -223,12 +224,14 @@ class Declared:
 
 
 def _short_text(value: Any) -> str:
+    """Text of a value with 6 digits for floats, also in lists."""
     if isinstance(value, list):
         return f"[{', '.join(map(_short_text, value))}]"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _all_quantities(owner: type) -> Iterator[Quantity]:
+    """Quantities of a class with those of nested classes, by full names with their section."""
     for slot in _slots_of(owner):
         yield from slot.own
         otherwise = slot.section.otherwise
@@ -240,10 +243,12 @@ def _all_quantities(owner: type) -> Iterator[Quantity]:
 
 
 def _full_key(section: str, name: str) -> str:
+    """Name with its section; unchanged if there is no section or it already has one."""
     return f"{section}.{name}" if section and "." not in name else name
 
 
 def _section_name(quantity: Quantity) -> str:
+    """Section in a quantity's name; "" without one."""
     return quantity.name.rpartition(".")[0]
 
 
@@ -251,12 +256,14 @@ _SLOTS: dict[type, tuple[_Slot, ...]] = {}
 
 
 def _slots_of(owner: type) -> tuple[_Slot, ...]:
+    """Fields of a dataclass with their declared quantities, computed once per class."""
     if owner not in _SLOTS:
         _SLOTS[owner] = tuple(_make_slot(owner, field) for field in fields(owner) if field.init)
     return _SLOTS[owner]
 
 
 def _make_slot(owner: type, field: Field[Any]) -> _Slot:
+    """A dataclass field with its quantities, nested classes, section, and whether None is allowed."""
     hint = field.type
     if isinstance(hint, str):  # postponed; `get_type_hints` needs all names, also those imported for type checking only
         hint = eval(hint, dict(vars(sys.modules[owner.__module__])))
@@ -306,6 +313,7 @@ _KINDS: Final[dict[Any, Kind]] = {
 
 
 def _union_members(hint: Any) -> tuple[Any, ...]:
+    """Types of a union, or the hint itself in a tuple."""
     return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
 
 

@@ -67,6 +67,7 @@ def schema_text(schema: Schema) -> str:
 
 
 def _range_schema(quantity: Quantity) -> Schema:
+    """JSON schema of a quantity's range, without ends that are infinite."""
     least = "exclusiveMinimum" if quantity.above else "minimum"
     most = "exclusiveMaximum" if quantity.below else "maximum"
     ends = {least: quantity.lowest, most: quantity.highest}
@@ -74,6 +75,7 @@ def _range_schema(quantity: Quantity) -> Schema:
 
 
 def _words_schema(quantity: Quantity) -> Schema:
+    """JSON schema of a text: its choices, or a text that is not blank unless that is allowed."""
     if quantity.choices:
         return {"enum": list(quantity.choices)}
     return {} if quantity.blank else {"pattern": "\\S"}

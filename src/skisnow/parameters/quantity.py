@@ -229,6 +229,7 @@ class Quantity:
         raise ParameterError(_OF_ANOTHER_KIND[self.kind]).tag("wrong_kind", name=self.name, value=shown_value(value))
 
     def _number_of_kind(self, value: float) -> float | int:
+        """Number as a float, or an int for whole numbers; rejects fractions and sizes out of reach."""
         try:
             number = float(value)
         except OverflowError:
@@ -299,6 +300,7 @@ class Quantity:
             )
 
     def _allows(self, value: InputValue) -> bool:
+        """True if a value is within the range or choices; for a tuple, if all its numbers are."""
         if isinstance(value, str):
             return bool(value or self.blank) and (not self.choices or value in self.choices)
         if isinstance(value, bool):
@@ -341,6 +343,7 @@ _HALF_RANGES: Final = {
 
 
 def _allowed_texts(choices: Sequence[str], blank: bool) -> Message:
+    """Message with the allowed texts: the choices, or any text, which may be blank if `blank`."""
     if len(choices) > 2:
         return Message("one of {choices}", choices=choices)
     if len(choices) == 2:

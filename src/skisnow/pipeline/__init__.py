@@ -159,6 +159,7 @@ def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Calla
 
 
 def _simulate_with_contact(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
+    """Run of a turn, announced by `say` with the contact's name; KeyboardInterrupt if it was interrupted."""
     say(f"the turn with the contact “{contact}”")
     run = simulate(turn)
     if run.outcome == "interrupted":
@@ -167,6 +168,7 @@ def _simulate_with_contact(contact: str, turn: Scenario, say: Callable[[str], No
 
 
 def _require_inputs(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
+    """Reject an unloading ratio of 1 or less, a displacement of 0 or less, or too few runs; None is allowed."""
     if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
             "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
@@ -282,6 +284,7 @@ def ensemble_of(
 
 
 def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prior]) -> EnsembleRun:
+    """Run of the ensemble from its scenario and its computed row, with the values of the drawn inputs."""
     values = values_of(scenario)
     return EnsembleRun(
         snow=scenario.contact.snow,

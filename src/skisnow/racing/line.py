@@ -144,6 +144,7 @@ class RacingLine(Shown):
         return max(abs(self.at(x + side * 1e-9)[2]) for x in self._x for side in (-1.0, 1.0))
 
     def _repr_facts(self) -> Facts:
+        """Number of turns as title, and rows with the ranges of aside, along (m) and turning."""
         aside, along, turning = zip(*((turn.aside, turn.along, turn.turning) for turn in self.turns), strict=True)
         rows = (
             ("aside", f"{amount(min(aside), 'm')} to {amount(max(aside), 'm')}"),

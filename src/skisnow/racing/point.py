@@ -112,6 +112,7 @@ class PointRacer:
         return _as_columns(rows)
 
     def _runge_kutta_step(self, line: Line, x: float, square: float, time: float, step: float) -> tuple[float, float]:
+        """Squared speed and time after one fourth-order Runge-Kutta step in x from their values before."""
         inside = 1e-9 * step  # a line bends differently before and behind a break
         a, first = self.rates(line, x + inside, square)
         b, second = self.rates(line, x + 0.5 * step, square + 0.5 * step * a)
@@ -148,6 +149,7 @@ class PointRacer:
 
 
 def _as_columns(rows: list[tuple[float, float, float]]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """x, squared speed and time, each of shape (n,), from rows of the three."""
     x, square, time = np.array(rows).T
     return x, square, time
 

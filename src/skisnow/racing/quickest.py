@@ -63,6 +63,7 @@ class QuickestLine(Shown):
         return self.start_score.time - self.score.time
 
     def _repr_facts(self) -> Facts:
+        """Time and gates as title, and rows with the start, the gain (s) and the number of evaluations."""
         rows = (
             ("began from", amount(self.start_score.time, "s") if self.start_score.time else self.start_score.words),
             ("quicker by", amount(self.gained, "s")),
@@ -227,6 +228,7 @@ def _window_and_step(gates: int, window: int | None, step: int, ahead: int) -> t
 
 
 def _search_method(search: Search | None, model: RacerModel) -> Search:
+    """Method of the search; by default "surrogate" for the skier and "cma" for other models."""
     if search is None:
         return "surrogate" if model == "skier" else "cma"
     require_choice("search", search, get_args(Search))
@@ -234,6 +236,7 @@ def _search_method(search: Search | None, model: RacerModel) -> Search:
 
 
 def _require_settings(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
+    """Reject settings of the search that are out of their ranges."""
     require_range("evaluations", evaluations, 1)
     require_range("population", 4 if population is None else population, 4)
     require_range("spread", spread, 0.0, 1.0, above=True)
@@ -242,6 +245,7 @@ def _require_settings(*, evaluations: int, population: int | None, spread: float
 
 
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:
+    """Hash of racer, start line, settings and versions, which marks the evaluations of the same search."""
     search = version("cmaes") if settings[0] != 1 else None
     head = f"with gates {version('skisnow')} {search} {tuple(settings)} {begun.apexes}"
     return content_hash(head, racer, begun.turns)

@@ -84,6 +84,7 @@ def with_room(score: Score, room: float) -> Score:
 
 
 def _margin_of_passage(passage: Passage) -> float | None:
+    """Clearance of a gate's pole (m), less a fixed width if the gate was missed; None if it is unknown."""
     if passage.clearance is None:
         return None
     return passage.clearance - (ABREAST if passage.outcome == "missed" else 0.0)

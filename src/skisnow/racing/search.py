@@ -157,4 +157,5 @@ def optimiser_within(
 
 
 def _finite_or_failed(value: float) -> float:
+    """The value, or the value of a failed evaluation if it is not finite."""
     return value if np.isfinite(value) else FAILED

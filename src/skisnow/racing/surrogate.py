@@ -87,6 +87,7 @@ class Surrogate:
         scale: FloatArray,
         noise: float,
     ) -> Surrogate:
+        """Surrogate with these lengths and noise of the kernel, fitted to standardised values at places."""
         factor = _factorise_kernel(places, lengths, noise)
         return cls(places, lengths, level, scale, noise, factor, cho_solve(factor, standard))
 
@@ -211,6 +212,7 @@ def margins_of(evaluations: Sequence[Evaluated]) -> FloatArray:
 
 
 def _time_at_last_gate(evaluation: Evaluated) -> float:
+    """Time (s) of an evaluation at its last gate, also without an allowed line; infinite if it is unknown."""
     if evaluation.value < NOT_PASSED:
         return evaluation.value
     gates = evaluation.row.get("gates")

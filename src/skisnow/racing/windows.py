@@ -98,6 +98,7 @@ class Windows:
         )  # fmt: skip
 
     def _make_batches(self, line: RacingLine, first: int, last: int, end: int) -> Batches:
+        """Evaluations of lines with new turns `first` to `last` - 1; the race ends at gate `end`."""
         part = first_gates(line, end)
 
         def point_of(place: FloatArray) -> LinePoint:

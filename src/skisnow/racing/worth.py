@@ -103,6 +103,7 @@ class Worth(Shown):
         return compare_gates(own, base)
 
     def _repr_facts(self) -> Facts:
+        """Name and time difference on its own snow as title, and rows with mean, faster snows and verdict."""
         rows = (
             ("over the snows", f"{amount(self.mean, 's')} ± {amount(self.deviation, 's')}"),
             ("faster on", f"{self.faster} of {len(self.differences)} snows"),
@@ -244,5 +245,6 @@ def _spread_interval(value: float, spread: float) -> tuple[float, float]:
 
 
 def _fingerprint(points: Sequence[tuple[Scenario, RacingLine]], model: RacerModel) -> str:
+    """Hash of the scenarios, lines, racer's model and version, which marks the same evaluations."""
     lines = tuple((along.apexes, along.turns) for _, along in points)
     return content_hash(f"with gates {version('skisnow')} {model}", tuple(scenario for scenario, _ in points), lines)

@@ -100,6 +100,7 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
 
 
 def _fixed_parts_of_run(run: Run) -> Setting:
+    """Values of a run that do not change over time, and its boots, None without them."""
     scenario = run.scenario
     contact, sledge = scenario.contact, scenario.sledge
     stress = contact.snow.failure_shear_stress
@@ -203,6 +204,7 @@ def _boot_axes(boots: ReplayBoots) -> FloatArray:
 
 
 def _skier(arrays: Mapping[str, FloatArray], height: float, weight: float, boots: ReplayBoots) -> ReplaySkier:
+    """Skier of a replay with the joints of a body of this height (m) and weight (N) over time."""
     axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
     joints = drawn_joints(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
     return ReplaySkier(height=height, weight=weight, joints=joints)
@@ -244,6 +246,7 @@ def _heights(slope: Slope, place: FloatArray) -> FloatArray:
 
 
 def _skis_of_arrays(arrays: Mapping[str, FloatArray], setting: Setting) -> ReplaySkis:
+    """Skis of a replay from histories by name, with the ski's shape at their stations."""
     ski, station, side = setting.ski, arrays["station"], setting.stance_width / 2.0
     at = ski.at(np.clip(station, float(ski.station[-1]), float(ski.station[0])))
     histories = ("bending", "twist", "edge_depth", "force_per_length", "normal_force")

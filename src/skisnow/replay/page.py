@@ -69,6 +69,7 @@ def write_replay(
 
 
 def _make_replay(run: Run | Replay | str | Path, title: str | None = None) -> Replay:
+    """Replay of a run, a run file or a replay; rejects a title for a replay, which has its own."""
     if isinstance(run, Replay):
         if title is not None:
             raise ParameterError("a replay has its own title: give it to replay_of_run or replay_of_file").tag(
@@ -117,6 +118,7 @@ def static_text(name: str) -> str:
 
 
 def _script_text(name: str) -> Any:
+    """Text of a script for a page, marked as safe; RuntimeError if it contains the end of a script."""
     text = static_text(name)
     if any(words in text for words in _ENDS_A_SCRIPT):
         raise RuntimeError(f"{name} cannot be put into a page: it has {' or '.join(_ENDS_A_SCRIPT)} in it")
@@ -214,6 +216,7 @@ def _thin_replay(replay: Replay) -> Replay:
 
 
 def _arrays_by_name(replay: Replay) -> dict[str, FloatArray]:
+    """All arrays of a replay as floats by their name in the page; missing ones are left out."""
     skis, skier = replay.skis, replay.skier
     arrays: dict[str, Any] = {name: getattr(replay, name) for name in (*_MOTION, "profile")}
     arrays |= _arrays_of(skis) | {"thickness": drawn_thickness(skis.station)} | _arrays_of(replay.groove, "groove_")
@@ -241,6 +244,7 @@ def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
 
 
 def _head(replay: Replay) -> dict[str, Any]:
+    """Header of a replay's page: values that do not change over time."""
     return {
         "format": FORMAT,
         "title": replay.title,
@@ -267,6 +271,7 @@ def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
 
 
 def _pack_array(kind: str, unit: str, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
+    """Bytes, padded to 4, of 32-bit floats or 16-bit steps, with the description to unpack them."""
     description: dict[str, Any] = {"type": kind, "shape": list(values.shape), "unit": unit}
     if kind == _EXACT:
         numbers: npt.NDArray[Any] = values.astype("<f4")

@@ -109,6 +109,7 @@ def _values(file: Any, name: str) -> FloatArray:
 
 
 def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
+    """Values of a run that do not change over time, from its scenario's values; `ski` replaces the ski they name."""
     slope, file = _read_slope(path, values), scenario_value(values, "ski.file")
     if ski is None:
         ski = ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file))
@@ -136,6 +137,7 @@ def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: flo
 
 
 def _read_slope(path: Path, values: dict[str, Any]) -> Slope:
+    """Slope of a run file: a plane, a grid or a profile; files are relative to the run's path."""
     kind = needed_value(values, "slope.kind")
     if kind == "plane":
         return Plane(needed_value(values, "slope.angle_deg") * DEGREE)

@@ -68,6 +68,7 @@ def drawn_joints(
 
 
 def _hip_position(pelvis: FloatArray, left: FloatArray, side: int, height: float) -> FloatArray:
+    """Positions of a hip (m), left of the pelvis for side 0 and right of it for side 1."""
     return pelvis + (0.25, -0.25)[side] * HIP_WIDTH * height * left
 
 
@@ -132,10 +133,12 @@ def two_bones(start: FloatArray, end: FloatArray, first: float, second: float, b
 
 
 def _unit_vectors(vectors: FloatArray) -> FloatArray:
+    """Vectors of length 1 in the same directions; zero vectors stay 0."""
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9))
 
 
 def _row_products(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Scalar product of each pair of rows, shape (n, 1)."""
     return np.einsum("na,na->n", one, other)[:, None]
 
 
@@ -196,6 +199,7 @@ def skier_parts(height: float) -> list[Part]:
 
 
 def _trunk_and_head(height: float) -> list[Part]:
+    """Parts of trunk and head for a body height (m)."""
     h, trunk, head = height / DRAWN_HEIGHT, TRUNK.length * height, HEAD * height
     hips = [(-0.11 * h, 0.04, 0.07, 0.0), (-0.07 * h, 0.105, 0.15, -0.01), (0.03 * h, 0.115, 0.165, -0.01)]
     chest = [
@@ -212,6 +216,7 @@ def _trunk_and_head(height: float) -> list[Part]:
 
 
 def _limb_parts(side: str, height: float) -> list[Part]:
+    """Parts of one side, "left" or "right", for a body height (m): boot, leg, arm and pole."""
     h = height / DRAWN_HEIGHT
     shank, thigh, arm, pole = (share * height for share in (SHANK.length, THIGH.length, UPPER_ARM.length, POLE))
     return [
@@ -284,6 +289,7 @@ def linear_light(colour: npt.ArrayLike) -> FloatArray:
 
 
 def _join_meshes(meshes: Sequence[Mesh]) -> Mesh:
+    """One mesh of several, with the vertex numbers of the triangles moved on."""
     first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),

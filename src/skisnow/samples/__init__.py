@@ -94,6 +94,7 @@ def gpx_track(place: FloatArray, time: FloatArray, *, slope_angle: float) -> str
 
 
 def _gpx_document(rows: list[str]) -> str:
+    """GPX text around its rows."""
     head = '<gpx version="1.1" creator="skisnow, synthetic" xmlns="http://www.topografix.com/GPX/1/1">'
     return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', head, *rows, "</gpx>", ""])
 
@@ -255,16 +256,19 @@ def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
 
 
 def _simulate_sample(**changes: float) -> Run:
+    """Fast run of the sample scenario with changes by key."""
     return simulate(load_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
 
 
 def _track_csv(run: Run, random: np.random.Generator) -> str:
+    """CSV text of a run's track in metres, thinned out and with drawn noise."""
     place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)
     rows = np.column_stack([run.time[::_EVERY], place])
     return "\n".join(["time_s,x_m,y_m,z_m", *(",".join(f"{value:.3f}" for value in row) for row in rows.tolist()), ""])
 
 
 def _track_gpx(run: Run, random: np.random.Generator) -> str:
+    """GPX text of a run's track on a plane slope, thinned out and with drawn noise."""
     slope = run.scenario.slope
     assert isinstance(slope, Plane)
     place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)

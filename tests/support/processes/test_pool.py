@@ -15,7 +15,13 @@ import pytest
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.messages import Message
 from skisnow._support.processes.batch import Pool, run_batch, worker_count
-from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, _in_worker, begin_worker, compute_rows, process_crew
+from skisnow._support.processes.crews import (
+    LARGEST_FOR_A_PIPE,
+    _compute_in_worker,
+    begin_worker,
+    compute_rows,
+    process_crew,
+)
 from skisnow._support.processes.kept_rows import KeptRows, NumberedText
 from tests.coded import raises
 
@@ -88,7 +94,7 @@ def test_quick_points_are_handed_over_many_at_a_time() -> None:
 
 def test_only_a_pool_starts_a_worker() -> None:
     with raises(SkisnowError, "no_pool"):
-        _in_worker([(0, None)])
+        _compute_in_worker([(0, None)])
 
 
 @pytest.mark.parametrize(("points", "each"), [([2.0], 2.0), ([1.0, 3.0], 2.0), ([], 0.0)])

@@ -65,7 +65,7 @@ def process_crew(function: PointFunction, workers: int) -> Crew:
         executor.shutdown(wait=True, cancel_futures=True)
         leash.close()
 
-    return Crew(executor, _in_worker, workers, close, LARGEST_FOR_A_PIPE)
+    return Crew(executor, _compute_in_worker, workers, close, LARGEST_FOR_A_PIPE)
 
 
 class _Worker:
@@ -80,7 +80,8 @@ def _prepare_worker(function: PointFunction, alive: Connection) -> None:
     _Worker.function = function
 
 
-def _in_worker(points: list[Numbered]) -> Done:
+def _compute_in_worker(points: list[Numbered]) -> Done:
+    """Compute points in this worker process by the function that its pool set; an error without a pool."""
     if _Worker.function is None:
         raise SkisnowError("A worker was not started by a Pool.").tag("no_pool")
     return compute_rows(_Worker.function, points)
@@ -106,6 +107,7 @@ def begin_worker(alive: Connection) -> None:
 
 
 def _exit_when_parent_ends(alive: Connection) -> None:
+    """Wait until the parent process ends, then end this one at once with status 1."""
     try:
         alive.recv()
     except (EOFError, OSError):

@@ -144,6 +144,7 @@ class KeptRows:
         return ((number, text) for number, text in self._run_query("select number, row from rows order by number"))
 
     def _run_query(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
+        """Records of a query one by one; errors of the database become those of the file."""
         with _errors(self.path, self._database):
             # `yield from` closes the cursor, which fails behind a closed database
             for record in self._database.execute(query, parameters):  # noqa: UP028
@@ -190,6 +191,7 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
 
 
 def _damage_error(path: Path | None, why: str) -> ParameterError:
+    """Error that a file of finished points is damaged or something else, with the reason."""
     return ParameterError(
         "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute its points again, "
         "or move it away."

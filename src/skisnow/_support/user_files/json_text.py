@@ -51,6 +51,7 @@ def own_json(text: str | bytes) -> Any:
 
 
 def _checked_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Dictionary of an object's pairs; rejects a repeated key."""
     entries = dict(pairs)
     if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
@@ -59,6 +60,7 @@ def _checked_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _refuse_constant(word: str) -> None:
+    """Reject NaN and infinities, which are not JSON."""
     raise ContentError("{word} is not a number of JSON. Write null or a finite number.").tag("not_json", word=word)
 
 
@@ -85,6 +87,7 @@ def read_record(path: str | Path, kind: type[T]) -> T:
 
 
 def _matches_hint(value: object, hint: Any) -> bool:
+    """True if a JSON value has the type of a hint: union, literal, mapping or class; an int is also a float."""
     origin = get_origin(hint)
     if origin is UnionType:
         return any(_matches_hint(value, argument) for argument in get_args(hint))

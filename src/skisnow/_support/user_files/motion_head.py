@@ -73,4 +73,5 @@ def require_whole(path: str | Path, head: Mapping[str, str], **counts: int) -> N
 
 
 def _header_values(head: Mapping[str, str]) -> dict[str, str]:
+    """Values of a header by key in lower case."""
     return {key.lower(): value for key, value in head.items()}

@@ -91,6 +91,7 @@ class ContentError(ParameterError):
 
 
 def _with_place(what: str, line: int | None, title: str) -> str:
+    """Problem `what` with the file's title and the line before it, as far as they are known."""
     if line and title:
         return Message("{file}, line {line}: {problem}", file=title, line=line, problem=what)
     if line:

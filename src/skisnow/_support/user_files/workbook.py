@@ -92,6 +92,7 @@ def sheet_layouts(data: bytes) -> dict[str, Layout]:
 
 
 def _layout_of(sheet: Any) -> Layout:
+    """Merged, hidden and struck-out cells of a sheet of openpyxl, with rows and columns counted from 0."""
     cells = {(row - 1, column - 1): cell for (row, column), cell in sheet._cells.items() if cell.value is not None}
     columns = (dimension for dimension in sheet.column_dimensions.values() if dimension.hidden)
     return Layout(
@@ -105,6 +106,7 @@ def _layout_of(sheet: Any) -> Layout:
 
 
 def _is_partly_struck(value: Any) -> bool:
+    """True if a cell's value is rich text with a part that is struck out."""
     return isinstance(value, list) and any(getattr(part, "font", None) and part.font.strike for part in value)
 
 
@@ -122,6 +124,7 @@ def _call_openpyxl(doing: Callable[[], Any]) -> Any:
 
 
 def _read_rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> Rows:
+    """Texts of cells; `fractions` collects the places of floats, which `like_typed` writes with the typed mark."""
     sheet.reset_dimensions()  # the stated size may be wrong
     rows: Rows = []
     typed = {".": 0, ",": 0}
@@ -156,6 +159,7 @@ def _read_rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool
 
 
 def _cell_text(value: object) -> str:
+    """Text of a cell's value: "" for None, whole floats without ".0", dates in ISO form, line breaks as spaces."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value).upper()
     if isinstance(value, float):
@@ -164,6 +168,7 @@ def _cell_text(value: object) -> str:
 
 
 def _date_text(value: date | time) -> str:
+    """ISO text of a date or time to the second; a date alone for midnight."""
     if isinstance(value, datetime) and value.time() == time():
         return value.date().isoformat()
     if isinstance(value, datetime | time):
@@ -172,6 +177,7 @@ def _date_text(value: date | time) -> str:
 
 
 def _require_sound(data: bytes) -> None:
+    """Reject a workbook that is too large, protected, in the old form, or has formulas without values."""
     if len(data) > MOST_WORKBOOK_BYTES:
         raise ContentError("The workbook is too large: at most {limit} MiB are read. Save it as CSV.").tag(
             "too_large", limit=MOST_WORKBOOK_BYTES >> 20
@@ -184,6 +190,7 @@ def _require_sound(data: bytes) -> None:
 
 
 def _require_small_parts(data: bytes) -> None:
+    """Reject a workbook that is too large when unpacked, or with a formula that has no stored value."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         if sum(part.file_size for part in archive.infolist()) > MOST_UNPACKED_BYTES:  # zipfile reads no byte more
             raise ContentError(

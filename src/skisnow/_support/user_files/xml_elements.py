@@ -52,6 +52,7 @@ class _Builder:
         self._count = 0
 
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
+        """Begin an element within the open one; rejects too many elements or too deep ones."""
         self._count += 1
         if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
             raise ContentError("More than {count} elements, or {depth} within each other, are not read.").tag(
@@ -66,13 +67,16 @@ class _Builder:
         self._open.append(element)
 
     def text(self, text: str) -> None:
+        """Add text to the open element, if it has no child yet."""
         if self._open and not self._open[-1].children:
             self._open[-1].text += text
 
     def end(self, _name: str) -> None:
+        """End the open element."""
         self._open.pop()
 
     def document_type(self, *_what: object) -> None:
+        """Reject a document type."""
         raise ContentError("A document type is declared, which is rejected: it may have endless entities.").tag(
             "document_type"
         )
