@@ -147,6 +147,7 @@ def choosable_flags() -> dict[str, str]:
 
 
 def _select_data(campaign: Campaign, choice: Choice) -> Campaign:
+    """Campaign with the experiments and flags of a choice excluded from the analysis."""
     excluding = campaign.excluding if choice.excluding is None else choice.excluding | ALWAYS_EXCLUDE
     return replace(
         campaign,

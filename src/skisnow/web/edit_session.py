@@ -96,6 +96,7 @@ class EditSession:
             self._campaign = replay_journal(new, before=self._campaign)
 
     def _written_since(self) -> tuple[JournalEntry, ...]:
+        """Entries of the journal that are newer than the last one that this session read."""
         return self._journals.entries(self.id, after=self._last)
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
@@ -198,6 +199,7 @@ class CorrectionSession(EditSession):
         return described
 
     def _written_since(self) -> tuple[JournalEntry, ...]:
+        """Corrections that are newer than the last one read; also adds them to the session's entries."""
         new = self._journals.corrections(self.id, after=self._last)
         self._entries += new
         return new

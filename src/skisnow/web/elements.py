@@ -83,6 +83,7 @@ class Words(ui.label):
     """Label in the language of the page, with subscripts in symbols such as H_V; ``text`` stays English."""
 
     def _text_to_model_text(self, text: str) -> None:
+        """Show a text in the page's language, as HTML if it contains symbols with subscripts."""
         shown = said(text, self.client)
         is_markup = "innerHTML" in self._props or SYMBOL.search(shown)  # the page would stay blank without it again
         if is_markup:
@@ -286,6 +287,7 @@ def add_error_pages(outer: FastAPI) -> None:
 
 
 def _notify(error: Exception) -> None:
+    """Notify the user of an error; outside of a page it is only logged."""
     sentence_ = error_sentence(error)
     try:
         ui.notify(said(sentence_), type="negative", multi_line=True, timeout=0, close_button=said(Message("Close")))
@@ -294,6 +296,7 @@ def _notify(error: Exception) -> None:
 
 
 def _error_page(error: Exception) -> None:
+    """Draw a page with the error's text; a wrong address or id gets status 404."""
     if isinstance(error, StoreError | ParameterError):
         ui.context.client.request.scope[STATUS] = 404
     with page_frame(Message("This page cannot be shown")):
@@ -313,10 +316,12 @@ def plain_page(title: str, sentence: str, status: int, request: Request, form: s
 
 
 async def _not_found_answer(request: Request, _: Exception) -> Response:
+    """Response 404: the lab has no page at this address."""
     return plain_page(Message("No such page"), Message("The lab has no page at this address."), 404, request)
 
 
 async def _error_answer(request: Request, error: Exception) -> Response:
+    """Response 500 with the error's text; an unexpected error is logged and shown by its reference."""
     if isinstance(error, SkisnowError):  # shown by the page
         words = error_sentence(error)
     else:

@@ -70,6 +70,7 @@ def is_loopback(host: str) -> bool:
 
 
 def _ip_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
+    """IP address of a text; None if it is not one."""
     try:
         return ipaddress.ip_address(text)
     except ValueError:
@@ -144,6 +145,7 @@ class Guard:
             await self.app(scope, _limit_body(receive, self.access.body_bytes), _add_headers(send, scope))
 
     def _refusing_response(self, scope: Scope, headers: Headers) -> Response | None:
+        """Response that rejects a request of another host or site, or one that is too large; otherwise None."""
         host, origin = headers.get("host", ""), headers.get("origin")
         try:
             is_own, sent_by = self.access.allows_host(host), None if origin is None else urlsplit(origin).netloc
@@ -160,6 +162,7 @@ class Guard:
         return None
 
     async def _token_answer(self, scope: Scope, receive: Receive) -> Response:
+        """Response to a request without cookie: the page that asks for the token, or the answer to it."""
         if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
             return await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
         return token_page(scope, 401)

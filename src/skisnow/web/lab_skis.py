@@ -147,6 +147,7 @@ def texts_of_ski(ski: Ski) -> tuple[str, str]:
 
 
 def _require_no_other_file(text: str) -> None:
+    """Reject a ski file whose table is a file of another name; errors of its TOML are left to the reader."""
     try:
         keys = toml_values(text)
     except ContentError:

@@ -159,6 +159,7 @@ def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> 
 
 
 def _require_allowed(placing: Placing) -> None:
+    """Reject a fall line's azimuth beyond ±360° or a start (s) beyond the maximum."""
     azimuth, start = placing.fall_line_azimuth_deg, placing.starts_at_s
     if azimuth is not None and not -360.0 <= azimuth <= 360.0:
         raise ParameterError("the fall line's direction is {azimuth:g}°; it must be from −360 to 360").tag(
@@ -171,6 +172,7 @@ def _require_allowed(placing: Placing) -> None:
 
 
 def _require_few_points(track: Track) -> None:
+    """Reject a track with more points than can be drawn next to a run."""
     if len(track.time) > MOST_POINTS:
         raise ParameterError(
             "{track} has {points} points; at most {most} are drawn next to a run. Cut the turn out"

@@ -273,6 +273,7 @@ def text_input(key: str, label: str, id_: str, further: str = "") -> None:
 
 
 def _add_label(id_: str, label: str) -> None:
+    """Add the label of an input with this id."""
     with ui.element("label").props(f"for={id_}"):
         Words(label)
 

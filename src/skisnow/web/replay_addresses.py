@@ -85,6 +85,7 @@ class RunFolders:
 
 
 def _ski_of_job(job: Path) -> Ski | None:
+    """Ski file of a job; None if the run has a ski of the catalogue or no readable job."""
     try:
         word = read_json(job)["changes"]["ski.file"]
     except (ValueError, KeyError, TypeError):

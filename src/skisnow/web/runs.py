@@ -179,6 +179,7 @@ class Runs:
         self._keep(replace(job, title=title))
 
     def _find_job(self, name: str) -> Job | None:
+        """Job by its name; None without one."""
         return next((job for job in self.jobs() if job.name == name), None)
 
     def cancel(self, name: str) -> None:
@@ -215,6 +216,7 @@ class Runs:
             self._process.kill()
 
     async def _run_job(self, job: Job) -> None:
+        """Run a job's command in a process to its end, and store its state."""
         self._keep(replace(job, state="running"))
         self._running, self.progress = job.name, "starting"
         self._process = await asyncio.create_subprocess_exec(
@@ -241,6 +243,7 @@ class Runs:
         return ["simulate", job.scenario, *changes, "--language", job.language, "--out", str(self.folder / job.name)]
 
     async def _follow_progress(self, process: asyncio.subprocess.Process) -> str:
+        """Store progress lines of a process as they come; returns the end of its last line."""
         last = ""
         assert process.stderr is not None
         while line := await process.stderr.readline():

@@ -102,6 +102,7 @@ class ScenarioField:
             self._range = sentence(range_words(key), "quiet range")
 
     def _create_element(self, text: str) -> InputField:
+        """Switch, menu or field for the kind of the key, with a text as its value."""
         if self.key.kind == "switch":
             return ui.switch(said(field_label(self.key)), value=text == ON).classes("field")
         if self.key.choices:
@@ -236,6 +237,7 @@ class SnowChoice:
         return self._found
 
     async def _choose_campaign_or_snow(self) -> None:
+        """Use the chosen snow; for a campaign analyse it first, and show its sites."""
         key = str(self._menu.value)
         of_campaign = key in self._campaigns
         self._site.set_visibility(False)
@@ -252,6 +254,7 @@ class SnowChoice:
         self._use_choice()
 
     async def _analyse_campaign(self, key: str) -> bool:
+        """Analyse a campaign if necessary; False if it failed or another choice was made meanwhile."""
         self._found, self._refused = None, ""
         self.words.set_text(Message("The campaign is being analysed …"))
         if self._analysis is None or self._analysis[0] != key:
@@ -266,6 +269,7 @@ class SnowChoice:
         return True
 
     def _use_choice(self) -> None:
+        """Set and show the chosen snow or its error, and announce the change."""
         self._found, self._refused = None, ""
         key = str(self._menu.value)
         try:
@@ -278,6 +282,7 @@ class SnowChoice:
         self._changed()
 
     def _snow_of(self, key: str) -> ChosenSnow | None:
+        """Snow of a choice, published or of the analysed campaign's site; None for numbers below."""
         if key == self._numbers:
             return None
         if key.startswith(PUBLISHED):
@@ -290,6 +295,7 @@ class SnowChoice:
         return ChosenSnow(analysis.snow(site or None), words, keys, analysis)
 
     def _show_error(self, error: SkisnowError) -> None:
+        """Store and show why the choice was rejected."""
         self._refused = error_sentence(error)
         self.words.set_text(self._refused)
 
@@ -341,6 +347,7 @@ def snow_words(snow: SnowProperties) -> str:
 
 
 def _in_words(snow: SnowProperties) -> Iterator[str]:
+    """Each known quantity of a snow with value, interval and unit."""
     quantities = (
         ("H_V", snow.snow_hardness, snow.snow_hardness_interval, N_PER_MM3, "N/mm³"),
         ("S_f", snow.failure_shear_stress, snow.failure_shear_stress_interval, N_PER_MM2, "N/mm²"),

@@ -123,6 +123,7 @@ class _AnnouncingServer(uvicorn.Server):
         self._begun = begun
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start the server, then call the function `begun` if it listens."""
         await super().startup(sockets)
         if self.started:
             self._begun()
@@ -222,6 +223,7 @@ def _set_language(code: str, back: str = "/") -> Response:
 
 
 def _asset_response(place: str) -> FileResponse:
+    """Response with a style sheet or script, which the browser must check again."""
     kind = "text/css" if place == STYLES else "text/javascript"
     return FileResponse(_HERE / place.removeprefix("/"), media_type=kind, headers={"cache-control": "no-cache"})
 

@@ -52,11 +52,13 @@ class SkiEditor:
         self._show_origin(name)
 
     def _add_factor_field(self, words: str) -> ui.input:
+        """Add a field for a factor, 1 at first."""
         made = field(f"{words} ×", ONE, numeric=True)
         made.on("change", self._changed)
         return made
 
     def _add_file_fields(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
+        """Add text areas for the ski's file and table, and the button that draws them."""
         with folded(Message("The file of the ski")):
             sentence(
                 Message(
@@ -73,6 +75,7 @@ class SkiEditor:
         return written, rows
 
     def _file_and_table_text(self) -> tuple[str, str]:
+        """Texts of the file and the table as typed."""
         return str(self._text.value or ""), str(self._csv.value or "")
 
     def edit(self) -> SkiEditInput:
@@ -96,12 +99,14 @@ class SkiEditor:
         await self._take_file()
 
     async def _take_file(self) -> None:
+        """Start again from the typed file, with all factors at 1."""
         self._base = self._file_and_table_text()
         for factor in self._factors.values():
             factor.set_value(ONE)
         await self._changed()
 
     def _show_origin(self, name: str) -> None:
+        """Show the name of the ski from which the edited one began."""
         self._begun.set_text(Message("Begun from {name}. Nothing is saved until you give it another name.", name=name))
 
 
@@ -197,6 +202,7 @@ class SkiImportForms:
             self._said = Outcome()
 
     async def _add_measured_ski(self) -> None:
+        """Save a ski of measured numbers in the lab; shows the fault if it is not valid."""
         name = " ".join(str(self._name.value or "").split())
         for field_ in self._fields.values():
             field_.error = None

@@ -108,12 +108,14 @@ class Studies(Runs):
         return study, read_table(self.file(name, TABLE), study.subject.keys, varied=study.varied)
 
     def _command(self, job: Job) -> list[str]:
+        """Arguments of skisnow for a study's job; a core stays free for the pages."""
         folder = self.folder / job.name
         workers = str(max(1, available_cores() - 1))  # a core stays free for the pages
         figure = ["--language", job.language, "--figure", str(folder / FIGURE)] if job.scenario == CARVE else []
         return ["study", str(folder / STUDY), "--workers", workers, *figure]
 
     async def _ended_as(self, job: Job, last: str, *, cancelled: bool) -> Job:
+        """Job after its process ended: done with counts, waiting again, cancelled, or failed with its last words."""
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)
         if (folder / TABLE).is_file():
             counts = await asyncio.to_thread(self._outcome_counts, job.name, job.language)

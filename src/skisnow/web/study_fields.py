@@ -118,6 +118,7 @@ def is_number(key: Quantity) -> bool:
 
 
 def _toml_key(name: str) -> str:
+    """Key for TOML, quoted if it has a dot."""
     return f'"{name}"' if "." in name else name
 
 
@@ -215,16 +216,19 @@ class AxisFields:
         return "" if name == NOTHING else name
 
     def _change_input(self) -> None:
+        """Show the fields of another input with its first range, and announce the change."""
         self._set_first_range()
         self._show()
         self._changed()
 
     def _set_first_range(self) -> None:
+        """Set the ends of the range for the input; empty without one."""
         ends = first_range(self._keys[self.name]) if self.name else None
         for field_, end in zip(self._ends, ends or (None, None), strict=True):
             field_.set_value("" if end is None else number_text(f"{end:g}"))
 
     def _show(self) -> None:
+        """Show the fields and the allowed range, or nothing without an input."""
         for field_ in (*self._ends, self._n, self._log):
             field_.set_visibility(bool(self.name))
         self._range.set_text(Message("Allowed: {allowed}.", allowed=self._keys[self.name].allowed) if self.name else "")

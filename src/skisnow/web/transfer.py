@@ -68,6 +68,7 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
 
 
 def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
+    """Add uploaded files to the store, unpacked in another process; returns the campaign's id."""
     with TemporaryDirectory(prefix="skisnow-upload-") as name:
         names = [upload.filename or "" for upload in uploads]
         for number, upload in enumerate(uploads):

@@ -71,6 +71,7 @@ class Unpacking:
                 self._write_file(member.filename, _unpacked_pieces(archive, member))
 
     def _write_file(self, name: str, pieces: Iterable[bytes]) -> None:
+        """Write an uploaded file; ParameterError if its name is unsafe or exists, or a limit is exceeded."""
         place = self._safe_place(name)
         self._files += 1
         if self._files > self.limits.files:
@@ -91,10 +92,12 @@ class Unpacking:
             ) from error
 
     def _too_many_files(self) -> ParameterError:
+        """Error for more files than are accepted at once."""
         most = self.limits.files
         return ParameterError("more than {most} files at once are not accepted").tag("too_many_files", most=most)
 
     def _safe_place(self, name: str) -> Path:
+        """Path of a file below the folder; ParameterError if its name is not safe."""
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
             raise ParameterError("the file {file} is not accepted: {why}").tag(
@@ -110,6 +113,7 @@ def _is_plain(member: zipfile.ZipInfo) -> bool:
 
 
 def _unpacked_pieces(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[bytes]:
+    """Bytes of a zip's member piece by piece; damage becomes a ParameterError."""
     with _damage_errors():
         content = archive.open(member)
     with content:
@@ -155,7 +159,7 @@ def zip_of(files: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def zip_of_campaign(write: Callable[[Path], None], *, report: Path | None = None) -> bytes:
-    """Bytes of a zip of a campaign, which ``write`` writes into a folder, and of the files of its report."""
+    """Bytes of a zip of a campaign, which ``write`` writes into a folder, and of the files in the folder ``report``."""
     with TemporaryDirectory(prefix="skisnow-export-") as name:
         folder = Path(name) / "campaign"
         write(folder)
@@ -215,6 +219,7 @@ def in_other_process(work: Callable[Given, Answer], *args: Given.args, **named: 
 
 
 def _process_pool() -> ProcessPoolExecutor:
+    """Pool of one spawned process that ends with the server."""
     context = multiprocessing.get_context("spawn")  # never by fork: the server has threads
     return ProcessPoolExecutor(1, mp_context=context, initializer=end_with_server)
 

@@ -103,6 +103,7 @@ class LineChart(Element, component="line_chart.js"):
         return plain | {"name": said(line.name, self.client)}
 
     def _chart_label(self, lines: Sequence[ChartLine]) -> str:
+        """Text for screen readers: the chart's title, range of values and names of lines."""
         values = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
         names = [line.name for line in lines if line.name]
         if not values:
@@ -196,6 +197,7 @@ class JobList:
             self._cards[job.name].show(job)
 
     def _act_and_show(self, act: Callable[[], None]) -> None:
+        """Do an action, notify the user if it is rejected, and show the list again."""
         try:
             act()
         except ParameterError as error:

@@ -112,6 +112,7 @@ def replaced(message: str, words: Mapping[str, str]) -> str:
 
 
 def _change_text(value: object, change: Callable[[str], str]) -> object:
+    """A field with `change` applied to its texts, also in lists and messages; numbers stay unchanged."""
     if isinstance(value, SkisnowError):
         value = value.message
     if isinstance(value, list):

@@ -172,6 +172,7 @@ def changes(
 
 
 def _add_history(test: ReplayedTest, view: TableView) -> None:
+    """Add a folded list of a test's entries with time and person; undone ones are marked."""
     if not test.history:
         return
     lines = []
@@ -265,6 +266,7 @@ class Attachments:
         return tests[-1].name if tests else ""
 
     def _store_attachment(self, event: Any) -> None:
+        """Store a photo or position that the browser sent with its test; shows why if it is rejected."""
         answer, test, file, who = event.args, self._test(), self._view.file, self._view.writer
         if "refused" in answer:
             self._view.say(REFUSED[str(answer["refused"])], "bad")
@@ -298,6 +300,7 @@ class Attachments:
                     button(Message("Remove"), lambda attachment=attachment: self._remove(attachment), "small")
 
     def _remove(self, attachment: ReplayedTest) -> None:
+        """Cancel the entry of a photo or position, and show the attachments again."""
         entry = NewEntry(
             action="cancel", file=attachment.file, test=attachment.name, who=self._view.writer, why="removed"
         )
@@ -309,6 +312,7 @@ class Attachments:
 
 
 def _in_words(attachment: ReplayedTest) -> Message:
+    """Message about an attachment: size (kB) of a photo, or position and accuracy (m)."""
     cells = attachment.rows[0].cells
     if photo := photo_of(attachment):
         return Message("Photo, {size:.0f} kB", size=len(photo) / 1000.0)

@@ -185,7 +185,7 @@ def receive_offline_readings(session: EditSession, changed: Callable[[set[str]],
         records = event.args if isinstance(event.args, list) else []
         answers, series = [], set[str]()
         for record in records[:MOST]:
-            once, refusal = _request_key(record), ""
+            once, refusal = _once_of_reading(record), ""
             try:
                 series.add(_stored(session, record, once))
             except (StoreError, ParameterError) as error:
@@ -201,12 +201,14 @@ def receive_offline_readings(session: EditSession, changed: Callable[[set[str]],
     ui.on("resent", take)
 
 
-def _request_key(record: Any) -> str:
+def _once_of_reading(record: Any) -> str:
+    """Key `once` of a reading that the browser kept offline; "" if it is missing or too long."""
     once = record.get("once") if isinstance(record, dict) else None
     return once if isinstance(once, str) and 0 < len(once) <= LONGEST else ""
 
 
 def _sent_cells(record: Any) -> dict[str, str]:
+    """Cells of a reading that the browser sent, by column, without an empty branch; empty if it sent none."""
     said = record.get("cells") if isinstance(record, dict) else None
     if not isinstance(said, dict):
         return {}
@@ -215,6 +217,7 @@ def _sent_cells(record: Any) -> dict[str, str]:
 
 
 def _reading_words(record: Any) -> Message:
+    """Message with depth, load and series of a reading that the browser sent."""
     cells = _sent_cells(record)
     if not cells:
         return Message("a reading")

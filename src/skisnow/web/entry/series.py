@@ -64,6 +64,7 @@ class SeriesForm:
         first.run_method("select")  # typing replaces the value of the last series
 
     def _begin_series(self, typed: dict[str, Field]) -> bool:
+        """Begin a series with the typed head; False, with the faults shown, if it is not valid or not new."""
         head = checked_fields(self._view.form, typed)
         if head is not None and self._view.test(name := head["experiment"]).history:
             words = Message("there is a test {experiment} already; give this one another name", experiment=name)
@@ -102,6 +103,7 @@ class SeriesForm:
         return self._view.tests()[-1].name == name
 
     def _focus_next(self, test: ReplayedTest) -> None:
+        """Put the focus on the first empty depth of the branch in progress, or on the next action."""
         back = any(row.cells.get(BRANCH) for row in test.rows)
         shown = self._readings.items()
         empty = [reading.depth for step, reading in shown if not reading.depth.value and (back or not step.branch)]
@@ -142,6 +144,7 @@ class SeriesForm:
         self._corrections.ask_again()
 
     def _draw_fields(self, test: ReplayedTest, steps: Iterable[Step], unstored: Mapping[Step, str]) -> None:
+        """Draw a depth field for each step; `unstored`: typed texts that are not stored yet."""
         with ui.element("div").classes("readings") as readings:
             readings.props["data-head"] = json.dumps(self._head)
             for step in steps:
@@ -189,6 +192,7 @@ class SeriesForm:
 
     @property
     def _test(self) -> ReplayedTest:
+        """Current state of the series."""
         return self._view.test(self._head["experiment"])
 
     def _show_changes(self) -> None:
@@ -208,6 +212,7 @@ class SeriesForm:
         return sorted(dict.fromkeys([*entered, *also]), key=float)
 
     def _add_reading(self, test: ReplayedTest, step: Step, unstored: str | None) -> ReadingField:
+        """Add the depth field of a step; it is read-only if the test was cancelled."""
         typed, closed = None if test.cancelled else unstored, bool(test.cancelled)
         made = add_reading_field(step, typed, lambda: self._test.row_under(*step), closed=closed)
         made.row.props["data-load"], made.row.props["data-branch"] = step
@@ -216,6 +221,7 @@ class SeriesForm:
         return made
 
     def _draw_further_load(self, test: ReplayedTest) -> None:
+        """Draw the folded form for a further load (N); nothing if the test was cancelled."""
         if test.cancelled:
             return
 

@@ -40,6 +40,7 @@ class SeriesCorrections:
 
     @property
     def _test(self) -> ReplayedTest:
+        """Current state of the series."""
         return self._view.test(self._name)
 
     def _changed(self) -> dict[Step, ReadingField]:
@@ -99,6 +100,7 @@ class SeriesCorrections:
         return True
 
     def _correct(self, depths: Mapping[Step, str], why: str) -> bool:
+        """Store corrected depths with a reason and draw the form again; False if they were not stored."""
         is_stored = self.store(depths, why)
         if is_stored:
             self._redraw()
@@ -142,6 +144,7 @@ class DepthsAfterWaiting:
         return {step: reading.typed for step, reading in fields if reading.differs(self._row(step))}
 
     def _row(self, step: Step) -> Reading | None:
+        """Reading of the series at a step; None without one."""
         return self._view.test(self._name).row_under(*step)
 
     def draw(self, steps: Sequence[Step], unstored: dict[Step, str], ask: ui.element) -> None:

@@ -46,6 +46,7 @@ class SingleForm:
         self._draw(self._begun or self._prefilled_cells(), None)
 
     def _open_row(self, name: str = "", row: str = "") -> bool:
+        """Open a row of a test, by default a new one; False if a question is not answered yet."""
         if self._is_unanswered():
             return False
         self.show(name, row=row)
@@ -65,6 +66,7 @@ class SingleForm:
         self._view.live_results.follow(name, chosen.cells["site"])
 
     def _prefilled_cells(self) -> dict[str, str]:
+        """Cells of a new test, some of them from the test before."""
         tests, key = self._view.tests(), self._view.form.key
         before = tests[-1].rows[-1].cells if tests else {}
         cells = {column: before.get(column, "") for column in KEPT}
@@ -77,6 +79,7 @@ class SingleForm:
         return cells
 
     def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, Reading] | None) -> None:
+        """Draw the form with `cells`; `correcting`: test and row to correct, None for a new test."""
         if self._is_new and correcting is not None:
             typed = {column: str(field_.value) for column, field_ in self._fields.items() if field_.value}
             self._begun = typed if typed.items() - self._prefilled_cells().items() else None
@@ -105,6 +108,7 @@ class SingleForm:
         self._focus_first()
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
+        """Field of a column, a menu for a plate; the test's name is read-only if `fixed`."""
         if column == "plate":
             plates, value = sorted(self._view.session.described.plates), cells.get(column)
             if not plates:
@@ -117,6 +121,7 @@ class SingleForm:
         return made
 
     def _focus_first(self) -> None:
+        """Put the focus on the first empty field that is not optional."""
         empty = [field_ for field_ in self._fields.values() if not field_.value and isinstance(field_, ui.input)]
         goes_on = TURNING in self._fields and bool(self._fields["depth_mm"].value)  # the next angle of the same test
         left = [column for column in OPTIONAL.get(self._view.file, ()) if not (column == TURNING and goes_on)]
@@ -125,12 +130,14 @@ class SingleForm:
             candidates[0].run_method("focus")
 
     def _checked_cells(self, rejected: str = Message("Not stored:")) -> dict[str, str] | None:
+        """Checked cells by column; None, with the faults shown after `rejected`, if one is not valid."""
         cells = checked_fields(self._view.form, self._fields)
         if cells is None:
             self._view.say(rejected, "bad", faults(self._fields.values()))
         return cells
 
     def _store_test(self) -> bool:
+        """Store the typed test, or a further row of it; False, with the faults shown, if it is not valid."""
         cells = self._checked_cells()
         if cells is None:
             return False
@@ -147,6 +154,7 @@ class SingleForm:
         return self._announce_stored(test.name, cells["site"])
 
     def _announce_stored(self, name: str, site: str) -> bool:
+        """Say that a test is stored, compute its results and begin the next one; returns True."""
         self._view.say(Message("Stored: test {name}.", name=name))
         self._view.live_results.follow(name, site)
         self._begun = None
@@ -154,6 +162,7 @@ class SingleForm:
         return True
 
     def _fault_of_second_row(self, test: ReplayedTest, cells: dict[str, str]) -> str:
+        """Fault if the cells cannot be a further row of the test; "" if they can."""
         if cells.get(TURNING) and all(row.cells.get(TURNING) for row in test.rows):
             first = test.rows[0].cells if test.rows else cells
             changed = next((column for column in ONCE if cells.get(column, "") != first.get(column, "")), None)
@@ -181,6 +190,7 @@ class SingleForm:
         return True
 
     def _ask_correction(self, test: ReplayedTest, row: Reading) -> bool:
+        """Ask for the reason of the changed cells, then store them; False if a cell is not valid."""
         cells = self._checked_cells(Message("Not corrected:"))
         if cells is None:
             return False
@@ -191,4 +201,5 @@ class SingleForm:
 
 
 def _entry_number(row: Reading) -> str:
+    """Sequence number of the entry of a reading, as text."""
     return str(row.entered.sequence)

@@ -116,6 +116,7 @@ class TableView:
         self._status.say(in_words(text), kind, items)
 
     def _make_entry(self, action: Action, test: ReplayedTest, **fields: Any) -> NewEntry:
+        """New entry of an action for a test of this table by the present writer."""
         return NewEntry(action=action, file=self.file, test=test.name, who=self.writer, **fields)
 
     def write(self, entry: NewEntry, seen: int, said: str) -> bool:
@@ -173,6 +174,7 @@ class EntryList:
         self.show(self.current)
 
     def _shown_tests(self) -> list[ReplayedTest]:
+        """Last tests of the table that have rows, up to the maximum number."""
         return [test for test in self._view.tests()[-MOST:] if test.rows]
 
     def show(self, current: str) -> None:
@@ -199,6 +201,7 @@ class EntryList:
                             self._add_item(name, row, text, about)
 
     def _add_item(self, name: str, row: str, text: str, about: str) -> None:
+        """Add an item that opens a row of a test; the current test is marked."""
         made: ui.element
         if (open_row := self.open_row) is not None:
             made = asking_button(text, lambda: open_row(name, row), "small")
@@ -285,6 +288,7 @@ class LiveResults:
             background_tasks.create(self._compute_requests(), name="beside", context=self._name.client)
 
     async def _compute_requests(self) -> None:
+        """Compute the wanted results, newest request only, and show them until none is wanted."""
         try:
             while self._wanted is not None:
                 (name, site, unsaid), self._wanted = self._wanted, None
@@ -315,6 +319,7 @@ class LiveResults:
             add_items(verdicts)
 
     def _show(self, name: str, results: QuickResults, unsaid: frozenset[str]) -> None:
+        """Show results, flags and chart of a test; flags with a code in `unsaid` are left out."""
         key = self._view.file, name
         if self._view.entry_list is not None:
             self._view.entry_list.take(results)

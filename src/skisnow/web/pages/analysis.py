@@ -93,6 +93,7 @@ def add_page(lab: Lab) -> None:
 
 
 def _no_report(page: AnalysisView | None, request: Request) -> Response:
+    """Response 404: the analysis was rejected, with its reason, or is not open."""
     if page is not None and page.refused:
         return plain_page(Message("No report yet"), page.refused, 404, request)
     return plain_page(Message("No such report"), Message("Open the analysis of the campaign again."), 404, request)
@@ -112,6 +113,7 @@ async def _report(page: AnalysisView | None, worker: Worker, request: Request) -
 
 
 def _add_links(kind: str, id_: str, key: str) -> None:
+    """Add the links of an analysis: entry, report, everything as a zip, and export."""
     with ui.element("div").classes("acts"):
         if kind == "entry":
             link(Message("Enter tests"), entry_address(id_))
@@ -198,6 +200,7 @@ class AnalysisView:
                 self._status.set_text(self.refused)
 
     def _is_old(self, number: int) -> bool:
+        """True if a newer computation was requested, or the page was closed."""
         return number != self._asked or self.closed
 
     def _refuse(self, refusal: Refusal) -> None:
@@ -221,6 +224,7 @@ class AnalysisView:
                 )
 
     def _show_result(self, result: Numbers) -> None:
+        """Show the results and tables of an analysis, and the choices at the first time."""
         first, self.analysed = not self._choices.default_slot.children, result
         if first and ReportData(result.analysis).has_tests:
             self._show_choices(result)
@@ -229,6 +233,7 @@ class AnalysisView:
         self._status.set_text(Message("{counts}. Drawing the figures …", counts=self._counts_text(result)))
 
     def _counts_text(self, numbers: Numbers) -> str:
+        """Text with the counts of experiments, in the language of the page."""
         with in_language(language_of(self._figures.client)):  # tasks in the background have no page
             return ReportData(numbers.analysis).counts
 
@@ -263,6 +268,7 @@ class AnalysisView:
                 html_words(tables[FIRST_TABLE])
 
     def _show_tables(self, numbers: Numbers) -> None:
+        """Show the tables in the language of the page, the long ones folded."""
         self._tables.clear()
         with self._tables:
             for name, html in numbers.tables[language_of()].items():
@@ -274,6 +280,7 @@ class AnalysisView:
                     html_words(html)
 
     def _show_choices(self, numbers: Numbers) -> None:
+        """Show the choices of difference, flags and experiments."""
         with self._choices:
             heading(Message("Included data"))
             options = {str(share): f"{100.0 * share:.0f} %" for share in DIFFERENCES}
@@ -287,11 +294,13 @@ class AnalysisView:
             _add_folded(Message("Included experiments"), lambda: self._list_experiments(numbers))
 
     def _list_marks(self, numbers: Numbers) -> None:
+        """List a checkbox for each quality flag that can be excluded."""
         before = numbers.analysis.campaign.excluding
         for code, words in choosable_flags().items():
             ui.checkbox(said(words), value=code in before, on_change=partial(self._choose_flag, code, before))
 
     def _list_experiments(self, numbers: Numbers) -> None:
+        """List a checkbox for each experiment, up to a maximum number per kind."""
         for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
             rows = numbers.analysis.results[kind]["experiments"]
             for row in rows[:MOST_LISTED]:
@@ -300,6 +309,7 @@ class AnalysisView:
                 sentence(Message(_FIRST_ONLY[kind], most=MOST_LISTED, all=len(rows)), "quiet")
 
     def _add_experiment_box(self, file: str, kind: str, row: dict[str, Any]) -> None:
+        """Add the checkbox of an experiment; it is disabled if the experiment was cancelled."""
         cancelled = "cancelled" in row["flags"]
         words = Message(
             _EXPERIMENT[kind, cancelled], name=row["experiment"], site=row["site"], angle=row["edge_angle_deg"]
@@ -312,16 +322,19 @@ class AnalysisView:
     async def _choose_flag(
         self, code: str, of_campaign: frozenset[str], event: ValueChangeEventArguments[bool | None]
     ) -> None:
+        """Exclude or include experiments with a flag, and compute again."""
         before = self._choice.excluding
         excluding = of_campaign if before is None else before
         excluding = excluding | {code} if event.value else excluding - {code}
         await self._choose(replace(self._choice, excluding=excluding))
 
     async def _choose_test(self, test: tuple[str, str], event: ValueChangeEventArguments[bool | None]) -> None:
+        """Include or leave out one experiment, and compute again."""
         out = self._choice.left_out
         await self._choose(replace(self._choice, left_out=out - {test} if event.value else out | {test}))
 
     async def _choose(self, choice: Choice) -> None:
+        """Compute again with a choice."""
         self._choice = choice
         self._status.set_text(Message("Computing …"))
         await self.compute()
@@ -340,6 +353,7 @@ def _add_folded(words: str, fill: Callable[[], object]) -> None:
 
 
 def _add_figure(shown: FigureImage) -> None:
+    """Add a figure with caption; a wide one can be scrolled."""
     with ui.element("figure"):
         with ui.element("div") as box:
             image = ui.element("img")

@@ -82,6 +82,7 @@ def _first_minute() -> None:
 
 
 def _list_drafts(lab: Lab) -> None:
+    """List the campaigns in entry, newest first, as cards with links; a damaged one shows its error."""
     heads = Journals(lab.store).list()
     heading(Message("Drafts"))
     if not heads:
@@ -110,6 +111,7 @@ def _list_drafts(lab: Lab) -> None:
 
 
 def _list_imported(lab: Lab) -> None:
+    """List the stored campaigns, newest first, with links; an import without corrections can be undone."""
     heading(Message("Imported"))
     stored = lab.store.list()
     if not stored:
@@ -131,11 +133,13 @@ def _list_imported(lab: Lab) -> None:
 
 
 def _undo_import(lab: Lab, id_: str) -> None:
+    """Remove a stored campaign and show the page again."""
     lab.store.remove(id_)
     ui.navigate.to(PATH)
 
 
 def _check_result(campaign: StoredCampaign) -> str:
+    """Numbers of errors and warnings of a campaign in words, or "not checked"."""
     if campaign.n_errors is None or campaign.n_warnings is None:
         return Message("not checked")
     errors = counted(campaign.n_errors, "{count} error", "{count} errors")
@@ -150,6 +154,7 @@ async def _add_sample(lab: Lab) -> None:
 
 
 def _store_sample(lab: Lab) -> str:
+    """Store the synthetic sample campaign and return its id."""
     with TemporaryDirectory(prefix="skisnow-sample-") as name:
         folder = Path(name) / "sample"
         write_reference(folder, seed=SAMPLE_SEED)
@@ -157,6 +162,7 @@ def _store_sample(lab: Lab) -> str:
 
 
 def _import_form(lab: Lab) -> None:
+    """Add the forms that upload a campaign as a folder, files or a zip."""
     heading(Message("Import"))
     sentence(
         Message(

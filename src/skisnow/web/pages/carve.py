@@ -149,10 +149,12 @@ class Slider:
         self._show(start)
 
     def _move(self, event: GenericEventArguments) -> None:
+        """Show the value at a position sent by the browser, and announce the change."""
         self._show(self._stops[min(max(int(event.args), 0), len(self._stops) - 1)])
         self._moved()
 
     def _show(self, value: str, shown: str = "") -> None:
+        """Set the value, and show it or the text `shown`."""
         self.value = value
         self._shown.set_text(f"{self._called}: {number_text(shown or value)}")
 
@@ -243,6 +245,7 @@ class CarvedTurn:
             background_tasks.create(self._answer_requests(), name="carve", context=self._status.client)
 
     async def _answer_requests(self) -> None:
+        """Solve the carve for the newest inputs and show it, until no request is waiting."""
         try:
             while self._waiting:
                 self._waiting = False
@@ -270,6 +273,7 @@ class CarvedTurn:
         ui.download(csv_text(rows).encode(), file)
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
+        """Show the answers, one or two: words, radii, table of facts and charts."""
         self._answers = answers
         self._status.set_text(joined([_in_words(answer) for answer in answers]))
         names = [answer["ski"]["name"] for answer in answers]
@@ -320,6 +324,7 @@ def _radius(answer: dict[str, Any]) -> str:
 
 
 def _in_words(answer: dict[str, Any]) -> Message:
+    """Message about an answer: ski, outcome with remedy, and warnings."""
     name, outcome = answer["ski"]["name"], outcome_words(str(answer["outcome"]))
     words = Message("{name}: {outcome}.", name=name, outcome=outcome)
     if answer["remedy"]:

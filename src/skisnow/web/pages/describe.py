@@ -80,6 +80,7 @@ def add_page(lab: Lab) -> None:
 
 
 def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
+    """Show why a description was not stored; problems of campaign.toml are listed."""
     if isinstance(error, FieldDataError):
         errors = [problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error"]
         status.say(Message("Not stored:"), "bad", [problem.text(language_of()) for problem in errors])
@@ -90,6 +91,7 @@ def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
 
 
 def _store_description(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
+    """Store a campaign's description and return its id; rejects the removal of tools and plates in use."""
     if session is None:
         return Journals(lab.store).begin(text, once=once)
     described = toml_values(text)
@@ -192,11 +194,13 @@ class EntryRows:
                 shape.set_value(shapes[word])
 
     def _add_focused_row(self) -> None:
+        """Add an empty row and put the focus on its name."""
         self._add_row({})
         name = self._rows[-1][0]
         name.client.run_javascript(f"getHtmlElement({name.id}).focus()")  # focus() waits for a menu to close
 
     def _add_row(self, values: dict[str, Any]) -> None:
+        """Add the fields of a tool or plate with its values by key."""
         number = len(self._rows) + 1
         with self._place, ui.element("div").classes("fields row"):
             name = field(Message(_NAME_OF[self.kind], number=number), values.get("name", ""))
@@ -231,6 +235,7 @@ class EntryRows:
 
 
 def _show_lengths(shape: ui.select, lengths: dict[str, ui.input]) -> None:
+    """Show only the length fields of the chosen shape."""
     for key, length in lengths.items():
         length.set_visibility(key in SHAPES[shape.value].lengths)
 
@@ -245,4 +250,5 @@ def _default_description() -> dict[str, Any]:
 
 
 def _number_text(value: float | None) -> str:
+    """Number for a field in local form; "" for None."""
     return "" if value is None else number_text(f"{value:.12g}")

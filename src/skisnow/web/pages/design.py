@@ -136,12 +136,14 @@ class _DesignPage(CarvedTurn):
         self._other.on_value_change(self.ask)
 
     def _add_search(self) -> None:
+        """Add the field of the wanted radius and the button that finds the design."""
         with ui.element("div").classes("acts"):
             self._target = field(Message("Wanted radius (m)"), "12", numeric=True)
             self._search = button(Message("Find the design"), self._find_radius, "main")
         self._found = Outcome()
 
     def _add_saving(self) -> None:
+        """Add the name of the designed ski, and the buttons that save or download it."""
         with ui.element("div").classes("acts"):
             self._name = field(Message("New name"))
             button(Message("Save in the lab"), self._save_ski, once=True)
@@ -149,11 +151,13 @@ class _DesignPage(CarvedTurn):
         self._saved = Outcome()
 
     def _reset_sliders(self) -> None:
+        """Set all sliders to their start, and compute again."""
         for key, (_, _, start) in SHAPES.items():
             self.sliders[key].put(float(start), "+g" if start == "+0" else "g")
         self.ask()
 
     def _designed_keys(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
+        """Keys of the designed ski; inputs in `without` stay at their start."""
         name = str(self._ski.value)
         changes = {key: float(SHAPES[key][2] if key in without else self.sliders[key].value) for key in SHAPES}
         source = said(Message("designed in the lab from the ski {name}", name=name))
@@ -175,6 +179,7 @@ class _DesignPage(CarvedTurn):
         return super().fact(key, answer)
 
     async def _find_radius(self) -> None:
+        """Set sidecut and stiffness so that the ski makes the wanted radius (m); shows why if it cannot."""
         self._found.say(Message("Searching …"))
         self._search.disable()
         try:
@@ -195,6 +200,7 @@ class _DesignPage(CarvedTurn):
         self.ask()
 
     async def _save_ski(self) -> None:
+        """Save the designed ski in the lab under the new name, and say so or why not."""
         name = " ".join(str(self._name.value or "").split())
         try:
             await run.io_bound(self._skis.save_texts, name, keys_text(self._designed_keys()), "")
@@ -206,4 +212,5 @@ class _DesignPage(CarvedTurn):
 
 
 def _other_skis(skis: LabSkis) -> dict[str, str]:
+    """Options of the menu of skis to compare with: nothing, and all names."""
     return {NOTHING: Message("nothing"), **{name: name for name in skis.names()}}

@@ -70,6 +70,7 @@ def _show_series(view: TableView, entry_list: EntryList, test: str, head: dict[s
 
 
 def _is_head(view: TableView, head: dict[str, str]) -> bool:
+    """True if the cells are a valid head of a series, unchanged by the check, with a known tool."""
     try:
         cells = {column: checked_cell(view.form, column, text) for column, text in head.items()}
     except ParameterError:
@@ -105,6 +106,7 @@ def _add_correction(lab: Lab) -> None:
 
 
 def _show_test(session: CorrectionSession, file: str, name: str) -> None:
+    """Show a stored test with its cells, changes and attachments."""
     view = TableView(session, file, form=Message("Cells"), below=Message("Changes"))
     with view.below, ui.element("div").classes("acts"):
         link(Message("Another test"), correction_address(session.id, table=file))
@@ -149,6 +151,7 @@ class ImportedTestForm:
         self._view.live_results.follow(self._name, site)
 
     def _draw_fields(self, lines: tuple[int, ...], cells: Mapping[str, str]) -> None:
+        """Draw fields for the lines of a test: columns with one value once, the others per line."""
         one_value = [column for column in self._columns if len({cells[cell_key(line, column)] for line in lines}) == 1]
         once = [column for column in one_value if column in ONCE]
         self._fields = {lines: {}}
@@ -164,6 +167,7 @@ class ImportedTestForm:
                         own[column] = self._make_field(column, cells[cell_key(line, column)], row=row)
 
     def _make_field(self, column: str, text: str, *, row: int | None = None) -> Field:
+        """Field of a cell, a menu for tools and plates; `row`: line in its label, None for none."""
         words = self._view.label(column)
         if row is not None:
             words = Message("{column}, row {row}", column=words, row=row)

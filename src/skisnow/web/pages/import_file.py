@@ -111,6 +111,7 @@ class _ImportPage:
             self._show_proposal(*tried)
 
     def _show_proposal(self, proposal: Proposal, hardness: tuple[str, float] | None) -> None:
+        """Show questions, errors and tables of a proposal; it can be stored only without open ones."""
         self.proposal = proposal
         self._tables.clear()
         with self._tables:
@@ -139,6 +140,7 @@ class _ImportPage:
             self._status.say(Message("Ready."))
 
     def _add_question(self, question: Question) -> None:
+        """Add a card with a question and a button, menu or field for its answer."""
         words = _question_words(question)
         with ui.element("div").classes("card ask"):
             if question.choices:
@@ -204,6 +206,7 @@ class _ImportPage:
         typed.on("blur", lambda: self._answer(option, key, str(typed.value)) if typed.value != text else None)
 
     async def _move_headings(self, section: Section, kind: str, row: str) -> None:
+        """Use another row of the sheet, counted from 1, as the headings of a table."""
         if row.isdecimal() and int(row) != section.header + 1:
             self.answers = self.answers.with_("table", section.key, NONE)
             await self._answer("table", f"{section.sheet.name}:{int(row)}", kind)
@@ -220,21 +223,25 @@ class _ImportPage:
         self._add_typed_answer(Message("Site of the sheet {sheet}", sheet=key), site, "site", key)
 
     async def _answer(self, option: str, key: str, value: str) -> None:
+        """Add an answer, and read the file again."""
         self.answers = self.answers.with_(option, key, value)
         self._status.say(Message("Reading the file again …"))
         await self.draw()
 
     async def _use_template(self, event: object) -> None:
+        """Use the answers of the chosen campaign, or none, and read the file again."""
         chosen = str(getattr(event, "value", ""))
         self.answers = self.imports.template_answers(chosen) if chosen else Answers()
         await self.draw()
 
     def _ready_files(self) -> Mapping[str, bytes]:
+        """Files of the campaign; rejects a proposal with open questions or errors."""
         if self.proposal is None or self.proposal.problems:
             raise ParameterError("Answer the questions first.").tag("not_ready")
         return self.proposal.files
 
     async def _keep_campaign(self) -> None:
+        """Store the imported campaign and show it on the page of campaigns."""
         added = await run.io_bound(self.imports.store, self.id_, self._ready_files())
         if added is not None:
             ui.navigate.to(f"/?added={added}")
@@ -271,6 +278,7 @@ def _question_words(question: Question) -> Message:
 
 
 def _choice_words(text: str) -> str:
+    """Text of an answer: yes, no, left out, a table or a column."""
     words = {"yes": Message("yes"), "no": Message("no"), NONE: LEFT_OUT}
     return said(words[text] if text in words else TABLES.get(f"{text}.csv", label(text)))
 

@@ -94,6 +94,7 @@ def _removal(tracks: TrackFolders, name: str) -> None:
 
 
 def _add_run(place: Path, name: str, title: str) -> None:
+    """Add the card of a run with the link to its replay."""
     with ui.element("section").classes("card"):
         heading(title, 2)
         sentence(_in_words(place), "quiet")
@@ -136,6 +137,7 @@ def _two_tracks_form(names: list[str]) -> None:
 
 
 def _select(key: str, text: str, names: dict[str, str], chosen: str, *, form: str = "replay") -> None:
+    """Add a labelled menu of a form sent by the browser; ``names``: titles by value; NONE sends ""."""
     with ui.element("label").props(f"for={form}-{key}"):
         Words(text)
     with ui.element("select").props(f"id={form}-{key} name={key}").classes("act"):

@@ -138,6 +138,7 @@ class _Form:
         self._draw_fields()
 
     def _draw_fields(self) -> None:
+        """Draw the fields of the chosen scenario's keys, with the texts that were typed before."""
         from ...scenario import scenario_file
         from ...scenario.keys import SCENARIO_KEYS, SECTIONS
 
@@ -172,6 +173,7 @@ class _Form:
         return typed
 
     def _show_numbers(self) -> None:
+        """Show the fields of the snow's numbers only as far as the chosen snow does not give them."""
         for name, is_given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
             self._fields[name].place.set_visibility(not is_given)
 
@@ -195,6 +197,7 @@ class _Form:
         self._status.say(Message("Not begun: {words}", words=words), bad=True)
 
     async def _add_job(self, scenario: str, changes: dict[str, str]) -> Job:
+        """Job of a run with changes and the chosen ski, course and snow; rejects what is not valid."""
         for made in self._fields.values():
             made.refuse("")
         for name in changes:
@@ -276,6 +279,7 @@ def add_expert_fields(
 
 
 def _has_skier(values: Mapping[str, Any]) -> bool:
+    """True if a scenario has a skier."""
     return values.get("skier.steers") is not None
 
 

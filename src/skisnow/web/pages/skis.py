@@ -93,6 +93,7 @@ class _SkisPage:
         self._second.on_value_change(self.draw)
 
     def _add_saving(self) -> None:
+        """Add the name of the edited ski, and the buttons that begin again, save or download it."""
         with ui.element("div").classes("acts"):
             button(Message("Begin again from the ski above"), lambda: self._editor.begin(str(self._first.value)))
         heading(Message("Save it"), 3)
@@ -136,10 +137,12 @@ class _SkisPage:
             self._checked = texts
 
     def _edited_skis(self, words: list[str], edit: SkiEditInput) -> list[tuple[Ski, str]]:
+        """Skis of the words, the edited one for EDITED, each with its file text."""
         edited = edit_ski_texts(edit)
         return [edited if word == EDITED else edit_ski_texts(SkiEditInput(*self._skis.texts(word))) for word in words]
 
     def _show_skis(self, drawn: list[Ski]) -> None:
+        """Show facts, sources and charts of the skis."""
         self._facts.clear()
         facts = [ski_facts(ski) for ski in drawn]
         with self._facts:
@@ -157,6 +160,7 @@ class _SkisPage:
             chart.show(list(_chart_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
 
     async def _save_ski(self) -> None:
+        """Save the edited ski in the lab under the new name, and say so or why not."""
         name, edit = " ".join(str(self._name.value or "").split()), self._editor.edit()
         try:
             self._editor.require_drawn()
@@ -183,10 +187,12 @@ class _SkisPage:
             ).props("role=status")
 
     def _save_edited(self, name: str, edit: SkiEditInput) -> None:
+        """Save the edited ski under a name; rejects a name that exists."""
         self._skis.require_new(name)
         self._skis.save_texts(name, *_edited_texts(edit, name))
 
     async def _download(self) -> None:
+        """Download the file of the edited ski, and its table if it has one."""
         try:
             self._editor.require_drawn()
             texts = await run.io_bound(_edited_texts, self._editor.edit())
@@ -205,6 +211,7 @@ def _edited_texts(edit: SkiEditInput, name: str = "") -> tuple[str, str]:
 
 
 def _chart_lines(key: str, drawn: list[Ski]) -> Iterator[ChartLine]:
+    """Chart lines of a key along each ski, in the units of its columns; a half width is drawn on both sides."""
     for number, ski in enumerate(drawn):
         columns = ski_columns(ski)
         station, values = columns["station_m"], columns[key]

@@ -104,9 +104,11 @@ class _Form:
 
     @property
     def _is_carve(self) -> bool:
+        """True if the study is of carve, not of a scenario."""
         return self._of.value == CARVE
 
     def _draw_fields(self) -> None:
+        """Draw the menus and fields for the chosen subject."""
         of = str(self._of.value)
         skis = self._skis.names()
         names = {name: name for name in skis} if self._is_carve else menu_with_default(skis)
@@ -130,12 +132,14 @@ class _Form:
         self._follow()
 
     def _draw_carve(self) -> None:
+        """Draw the fields of carve's inputs."""
         with ui.element("div").classes("inputs"):
             starts = {**{name: start for name, (_, _, start) in SLIDERS.items()}, UNLOADING: "10"}
             for name, start in starts.items():
                 self._add_field(_CarveField(study_keys(CARVE)[name], float(start), None))
 
     def _draw_scenario(self) -> None:
+        """Draw the fields of the scenario's keys."""
         from ...scenario.keys import SCENARIO_KEYS
 
         values = self._field_values()
@@ -149,10 +153,12 @@ class _Form:
         add_expert_fields(values, SECTION_WORDS, add)
 
     def _add_field(self, made: ScenarioField) -> None:
+        """Register a field and follow its changes."""
         self._fields[made.key.name] = made
         made.element.on_value_change(self._follow)
 
     def _field_values(self) -> dict[str, Any]:
+        """Values of the scenario by key; empty for carve."""
         from ...scenario import scenario_file
 
         return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
@@ -188,6 +194,7 @@ class _Form:
             self._status.say(Message("{name} is in the queue.", name=job.name))
 
     def _build_question(self) -> StudyQuestion:
+        """Question of the study from the form; rejects equal inputs, and a varied one that the snow fixes."""
         axes = [axis for axis in self._axes if axis.name]
         if len({axis.name for axis in axes}) < len(axes):
             raise ParameterError("the first and the second input are the same; choose another one").tag("same_input")
@@ -268,7 +275,7 @@ class _Card(JobCard):
         return CARVED if job.scenario == CARVE else job.scenario, job.given
 
     def show(self, job: Job) -> None:
-        """Show the state of the study."""
+        """Show the job's state on its card: Go on if it was cancelled or failed, the table's link if it is done."""
         super().show(job)
         self._go_on.set_visibility(job.state in ("cancelled", "failed"))
         self._table.set_visibility(job.state == "done")

@@ -55,6 +55,7 @@ def table_address(name: str) -> str:
 
 
 def _file_address(name: str, file: str) -> str:
+    """Address of a file of a study."""
     return f"{FILES}/{quote(name, safe='')}/{file}"
 
 
@@ -101,6 +102,7 @@ def _show_inputs(job: Job | None) -> None:
 
 
 def _show_map(name: str, language: str) -> None:
+    """Show the figure of a study, with a note if its English is not the page's language."""
     with named(ui.element("figure").classes("map").props("tabindex=0 role=region"), Message("Map")):
         ui.element("img").props(f'src="{_file_address(name, FIGURE)}"').props["alt"] = said(
             Message("Turn radius over the inputs that vary, as skisnow study draws it")
@@ -128,6 +130,7 @@ class _ResultsView:
         self._add_table(study)
 
     def _draw_chart(self) -> None:
+        """Draw the chosen result over the first input; three lines have names, the others are pale."""
         result = str(self._shown.value)
         x, y = field_label(self._keys[self._x]), self._results[result]
         self._chart.clear()
@@ -143,6 +146,7 @@ class _ResultsView:
         return tuple(row["ski_name" if name == SKI else name] for name in self._others)
 
     def _input_name(self, name: str) -> str:
+        """Label of an input, "Ski" for the ski."""
         return Message("Ski") if name == SKI else field_label(self._keys[name])
 
     def _chart_line(self, values: tuple[Any, ...], style: int, result: str) -> ChartLine:
@@ -157,6 +161,7 @@ class _ResultsView:
         return ChartLine(x, y, style, name="" if style == BEHIND else ", ".join(words))
 
     def _add_table(self, study: Study) -> None:
+        """Add the table of the study, up to a maximum number of rows."""
         heading(Message("Table"))
         columns = {name: self._input_name(name) for name in study.varied} | self._results
         place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), Message("Table"))
@@ -182,6 +187,7 @@ def _short(value: Any) -> str:
 
 
 def _add_row(row: dict[str, Any], columns: list[str]) -> None:
+    """Add a row of the table with its outcome; a missing number is a dash."""
     outcome = outcome_words(str(row["outcome"]))
     if row["outcome"] == "error":
         outcome = Message("error: {reason}", reason=row["reason"])
