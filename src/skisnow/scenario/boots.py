@@ -118,6 +118,7 @@ class Boots(Shown):
         return splines
 
     def _require_sound(self) -> None:
+        """Reject wrong shapes, numbers, axes and choices, rows that do not rise, and the slope frame over distance."""
         self._require_shapes()
         self._require_numbers()
         _require_rising(self.at, lambda row: Message("boots: {over} of row {row}", over=self.over, row=row + 1))
@@ -130,6 +131,7 @@ class Boots(Shown):
             ).tag("contradiction")
 
     def _require_shapes(self) -> None:
+        """Reject too few poses, and places or axes whose shapes do not fit their number."""
         n = len(self.at) if self.at.ndim == 1 else 0
         if n < FEWEST_POSES or self.place.shape != (n, 2, 3) or self.axes.shape != (n, 2, 3, 3):
             raise ParameterError(
@@ -144,6 +146,7 @@ class Boots(Shown):
             )
 
     def _require_numbers(self) -> None:
+        """Reject numbers that are not finite or too large."""
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ParameterError("boots: {name} contains a number that is not finite").tag(
@@ -155,6 +158,7 @@ class Boots(Shown):
                 )
 
     def _require_rotations(self) -> None:
+        """Reject axes that are not right-handed and orthonormal."""
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
             raise ParameterError("boots: axes are off by {off:.1e} from right-handed orthonormal ones").tag(
@@ -162,6 +166,7 @@ class Boots(Shown):
             )
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of poses, their range in time or distance, the frame and the source."""
         unit = "s" if self.over == "time" else "m"
         return Facts(f"{len(self.at)} poses of each, {ends(self.at, unit)}, in the {self.frame}'s frame; {self.source}")
 
@@ -284,6 +289,7 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
 
 
 def _require_columns(path: Path, head: list[str]) -> None:
+    """Reject unknown, repeated and missing columns; time or distance, and a column of a boot are needed."""
     places = OF_SLOPE if "left_x_m" in head else OF_SLEDGE
     motion_columns = (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
     counts = Counter(head)
@@ -331,6 +337,7 @@ def _require_rising(at: FloatArray, place: Callable[[int], Message]) -> None:
 
 
 def _read_column(path: Path, rows: list[Row], head: list[str], place: int) -> FloatArray:
+    """Numbers of one column; rejects a row with a wrong number of cells, or a cell that is no number."""
     values = np.empty(len(rows))
     for i, (line, row) in enumerate(rows):
         if len(row) != len(head):

@@ -57,6 +57,7 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
 
 
 def _require_key(values: Mapping[str, Any], name: str, remedy: Message) -> None:
+    """Reject values without a key; the error includes its meaning and the remedy."""
     if name not in values:
         raise ParameterError("{name} is missing: {meaning}. {remedy}").tag(
             "missing", name=name, meaning=SCENARIO_KEYS[name].meaning, remedy=remedy
@@ -64,10 +65,12 @@ def _require_key(values: Mapping[str, Any], name: str, remedy: Message) -> None:
 
 
 def _value_of(values: Mapping[str, Any], name: str) -> Any:
+    """Value of a key, or its default."""
     return values.get(name, SCENARIO_KEYS[name].default)
 
 
 def _build_boots(resolution: Resolution) -> Boots | None:
+    """Poses of the boots from boots.file; None without a file."""
     if "boots.file" not in resolution.files:
         return None
     edge_angle = math.radians(float(str(resolution.values["sledge.edge_angle_deg"])))
@@ -76,6 +79,7 @@ def _build_boots(resolution: Resolution) -> Boots | None:
 
 
 def _build_slope(resolution: Resolution) -> Slope:
+    """Slope of the kind in slope.kind: a plane, a grid of heights, or a profile."""
     values = resolution.values
     kind = _value_of(values, "slope.kind")
     if kind == "plane":
@@ -92,6 +96,7 @@ def _build_slope(resolution: Resolution) -> Slope:
 
 
 def _build_course(resolution: Resolution, slope: Slope) -> Course | None:
+    """Course of course.name or course.file, placed on the slope; None without both."""
     options: dict[str, Any] = {
         name.partition(".")[2]: value for name, value in resolution.values.items() if name.startswith("course.")
     }
@@ -111,6 +116,7 @@ def _build_course(resolution: Resolution, slope: Slope) -> Course | None:
 
 
 def _build_ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
+    """Ski from ski.file, or the catalogue's ski of ski.name, with the warnings of reading it."""
     if "ski.file" in resolution.files:
         return sources.ski(str(resolution.files["ski.file"].absolute()))
     name = resolution.values.get("ski.name")
@@ -218,6 +224,7 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
 
 
 def _full_name(name: str, part_names: Collection[str]) -> str:
+    """Full name of a scenario key; the error for an unknown one suggests a part of similar name."""
     try:
         return full_name(name)
     except ParameterError as error:

@@ -260,6 +260,7 @@ class Contact(Declared):
             ).tag("contradiction")
 
     def _require_consistent_friction(self) -> None:
+        """Reject a friction law together with μ, or the law's temperature and water without a law."""
         if self.friction_law is None:
             if self.temperature is not None or self.liquid_water is not None:
                 raise ParameterError(

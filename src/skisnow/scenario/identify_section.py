@@ -95,6 +95,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
 
 
 def _read_table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Table `name` of the section [identify], empty if it is missing; rejects another value."""
     table = section.get(name, {})
     if not isinstance(table, dict):
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'

@@ -25,7 +25,7 @@ _FULL_NAMES: Final = {name.split(".")[1]: name for name in SCENARIO_KEYS}
 
 
 def full_name(name: str) -> str:
-    """Full name of a key with or without its section.
+    """Full name of a scenario key, given with or without its section; ParameterError if it is unknown.
 
     >>> full_name("mass_kg")
     'sledge.mass_kg'
@@ -46,6 +46,7 @@ def full_name(name: str) -> str:
 
 
 def _unknown_key(name: str, similar: str | None, allowed: Sequence[str]) -> Message:
+    """Message for an unknown key of a scenario, with a similar key (None: no suggestion) and the allowed ones."""
     sentences = [Message("{name} is not a key of a scenario.", name=name)]
     if similar:
         sentences.append(Message("Did you mean {similar}?", similar=similar))

@@ -107,6 +107,7 @@ def map_system(text: str) -> MapSystem:
 
 
 def _height_unit(text: str, heights: str) -> float | None:
+    """Metres per unit of height in a map system's text; None if it states none."""
     units, old = _UNIT.findall(heights), _OLD_HEIGHT_UNIT.search(text)
     if units:
         return _factor(units[-1][1])

@@ -26,14 +26,15 @@ def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
     return (
         *model_limits(scenario.ski).values(),
-        *_like_radians(scenario),
-        *_like_another_unit(scenario),
+        *_angles_in_radians(scenario),
+        *_hardness_in_other_unit(scenario),
         *_outside_ranges(scenario),
-        *_short_boots(scenario),
+        *_incomplete_boot_poses(scenario),
     )
 
 
-def _like_radians(scenario: Scenario) -> list[str]:
+def _angles_in_radians(scenario: Scenario) -> list[str]:
+    """Warnings for angles so small that they were probably given in radians; empty for others."""
     angles = {"sledge.edge_angle_deg": scenario.sledge.edge_angle}
     if isinstance(scenario.slope, Plane):
         angles["slope.angle_deg"] = scenario.slope.angle
@@ -54,7 +55,8 @@ def _like_radians(scenario: Scenario) -> list[str]:
     return texts
 
 
-def _like_another_unit(scenario: Scenario) -> list[str]:
+def _hardness_in_other_unit(scenario: Scenario) -> list[str]:
+    """Warning for a hardness so large that it was probably given in N/m³; empty for others."""
     hardness = scenario.contact.snow.snow_hardness / N_PER_MM3
     if hardness <= GREATEST_LIKELY_HARDNESS:
         return []
@@ -67,7 +69,8 @@ def _like_another_unit(scenario: Scenario) -> list[str]:
     ]
 
 
-def _short_boots(scenario: Scenario) -> list[str]:
+def _incomplete_boot_poses(scenario: Scenario) -> list[str]:
+    """Warning if the poses in boots.file do not cover the whole run; empty if they do."""
     boots = scenario.boots
     if boots is None:
         return []
@@ -92,6 +95,7 @@ ABOUT: Final = Message("a simulated run")
 
 
 def _outside_ranges(scenario: Scenario) -> list[str]:
+    """Warnings for hardness, stress, edge angle, friction or drag area outside their measured or usual ranges."""
     contact = scenario.contact
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

@@ -142,7 +142,7 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
     fine = max(abs(size) for size in step) < FINEST
     if fine and max(map(abs, ends[:2])) <= 360.0 and max(map(abs, ends[2:])) <= 90.0:
         raise ParameterError(
-            _in_degrees(path, Message("The unit of x and y looks like degrees."), ends[0], ends[2], abs(step[0]))
+            _degrees_message(path, Message("The unit of x and y looks like degrees."), ends[0], ends[2], abs(step[0]))
         ).tag("in_degrees")
     if min(abs(size) for size in step) < FINEST:
         raise ParameterError("{path}: A cell is {step:g} m wide. Allowed: {finest:g} m or more.").tag(
@@ -158,7 +158,7 @@ def require_metres(path: str | Path, heights: PlacedValues, column: str, *, stee
     rises = [np.median(np.abs(np.diff(heights.columns[column], axis=axis))) / step[axis] for axis in (0, 1)]
     if max(rises) > steepest:
         unit = Message("The unit of x and y looks like degrees.")
-        raise ParameterError(_in_degrees(path, unit, *first, step[0])).tag("in_degrees")
+        raise ParameterError(_degrees_message(path, unit, *first, step[0])).tag("in_degrees")
 
 
 def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
@@ -185,6 +185,7 @@ def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
 
 
 def _require_usable(raster: Raster, system: MapSystem) -> None:
+    """Reject a raster in degrees, with depths instead of heights, or in a map system that distorts lengths."""
     n_rows, n_columns = raster.values.shape
     x, y = (
         start + size * (count - 1) / 2.0
@@ -192,7 +193,7 @@ def _require_usable(raster: Raster, system: MapSystem) -> None:
     )
     if system.in_degrees:
         raise ParameterError(
-            _in_degrees(
+            _degrees_message(
                 raster.path,
                 Message("The unit of x and y is degrees ({system}).", system=system.name),
                 x,
@@ -208,8 +209,8 @@ def _require_usable(raster: Raster, system: MapSystem) -> None:
     require_true_lengths(raster.path, system, x, y)
 
 
-def _in_degrees(path: str | Path, unit: Message, longitude: float, latitude: float, size: float) -> Message:
-    """Message of the error about a grid in degrees, with a command that converts it to metres."""
+def _degrees_message(path: str | Path, unit: Message, longitude: float, latitude: float, size: float) -> Message:
+    """Error message for a grid with cells of `size` (°), with a gdalwarp command that converts it to metres."""
     target = utm_zone(longitude, latitude) if abs(latitude) <= 90.0 else "EPSG:32632"
     return Message(
         "{path}: {unit} The grid is at x = {x:.6g}, y = {y:.6g}, its cells are {size:.3g} wide. Allowed: metres, with "

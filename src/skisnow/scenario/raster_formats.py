@@ -107,6 +107,7 @@ def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -
 
 
 def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None) -> None:
+    """Reject a raster that is turned, or that has neither a map system nor a position."""
     if transform.b != 0.0 or transform.d != 0.0:
         raise ParameterError(
             "{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned"
@@ -160,6 +161,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _refuse(path: str | Path, what: str) -> NoReturn:
+    """Raise an error for a file that cannot be used; `what` is the reason."""
     raise ParameterError("{path}: {what}").tag("invalid", path=path, what=what)
 
 
@@ -232,6 +234,7 @@ def _read_cells(path: str | Path, text: str, first: int, counts: tuple[int, int]
 
 
 def _refuse_number(path: str | Path, count: int, counts: tuple[int, int]) -> NoReturn:
+    """Raise an error for a file that has `count` values instead of columns × rows."""
     _refuse(
         path,
         f"The file has {count} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
@@ -313,6 +316,7 @@ def _require_each_once(
     of_y: tuple[FloatArray, npt.NDArray[np.intp]],
     action: str,
 ) -> None:
+    """Reject a table of a grid in which a place is missing or occurs twice, or whose rows are on no grid."""
     (x, i), (y, j) = of_x, of_y
     if len(x) * len(y) > SPARSE * len(rows):
         raise ParameterError(

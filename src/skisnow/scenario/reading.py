@@ -124,6 +124,7 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
 
 
 def _parse_scenario(title: str, file: Path | None, text: str) -> ScenarioInput:
+    """Input from the text of a scenario file, checked by key; paths in it start at the file's folder."""
     sections = toml_values(text, title=title)
     identify = sections.pop(IDENTIFY, {})
     if not isinstance(identify, dict):
@@ -161,6 +162,7 @@ def _warnings_of_built_in(name: str) -> tuple[str, ...]:
 
 
 def _resolve_and_build(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
+    """Scenario, warnings and resolution of an input; errors begin with the input's title."""
     if scenario_input.base is not None:
         return (
             changed_scenario(scenario_input.base, scenario_input.values),

@@ -252,6 +252,7 @@ def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
 
 
 def _contradiction(first: str, second: str, quantity: str) -> ContradictionError:
+    """Error for two keys of one layer that both give a quantity."""
     what = SCENARIO_KEYS[quantity].label or quantity if quantity in SCENARIO_KEYS else quantity
     return ContradictionError(
         (first, second),

@@ -194,6 +194,7 @@ class Scenario(Shown):
         return self.ski.stiffened(self.stiffness_factor)
 
     def _repr_facts(self) -> Facts:
+        """Title, and rows with slope, snow, sledge, ski, boots, skier, start, course, end and solver."""
         contact, sledge, start, solver = self.contact, self.sledge, self.start, self.solver
         slope = amount(self.slope.angle / DEGREE, "°") if isinstance(self.slope, Plane) else repr(self.slope)
         end = [(self.stop.duration, "s"), (self.stop.length, "m")]

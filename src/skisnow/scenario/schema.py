@@ -59,10 +59,12 @@ def output_scenario_schema() -> Schema:
 
 
 def _section_keys(section: str) -> list[Quantity]:
+    """Keys of a section, such as "snow"."""
     return [key for full, key in SCENARIO_KEYS.items() if full.startswith(f"{section}.")]
 
 
 def _identify_schema() -> Schema:
+    """JSON schema of the section [identify]: clock, runs, site, and a table for each parameter."""
     clock: dict[str, Any] = {
         "type": "string",
         "description": "whether photo cells count from the start, or each run's clock has a separate offset",

@@ -123,6 +123,7 @@ class Profile(Shown):
         _require_no_cliff(self.x, self.coefficients)
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of points, the ranges of x and height (m), and the source."""
         return Facts(f"of {len(self.x)} points: x {ends(self.x, 'm')}, height {ends(self.height, 'm')}; {self.source}")
 
     @property
@@ -147,6 +148,7 @@ class Profile(Shown):
 
 
 def _require_points(x: FloatArray, height: FloatArray) -> None:
+    """Reject too few points, numbers that are not finite, and x that does not rise from point to point."""
     if x.ndim != 1 or x.shape != height.shape or len(x) < FEWEST_POINTS:
         raise ParameterError(
             "a profile needs {fewest_points} points or more, each with x and height; there are x of shape {shape} "
@@ -168,6 +170,7 @@ def _require_points(x: FloatArray, height: FloatArray) -> None:
 
 
 def _require_no_gap(x: FloatArray) -> None:
+    """Reject a profile with neighbouring points too far apart in x."""
     widths = np.diff(x)
     place = int(np.argmax(widths))
     if widths[place] > LONGEST_GAP:

@@ -95,6 +95,7 @@ class SnowMap(Shown):
         return replace(snow, source=f"{snow.source}; {names}: means over the snow map {self.source}")
 
     def _repr_facts(self) -> Facts:
+        """Title with the ranges of the mapped quantities and the source."""
         parts = [
             f"{name} {span(float(grid.values.min()) / size, float(grid.values.max()) / size, unit)}"
             for name, grid, size, unit in (

@@ -128,6 +128,7 @@ class Terrain(Shown):
         _require_no_cliff(self.surface)
 
     def _repr_facts(self) -> Facts:
+        """Title with the size, spacing, ranges and smoothing of the grid, and its source."""
         n, m = self.height.shape
         step_x, step_y = (amount(step, "m") for step in self.surface.steps)
         apart = step_x if step_x == step_y else f"{step_x} and {step_y}"
@@ -181,6 +182,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
 
 
 def _read_heights(path: Path) -> PlacedValues:
+    """Heights with their places from an Esri ASCII grid, a GeoTIFF or a table, by ending or first bytes."""
     kind = path.suffix.lower()
     if kind in (".asc", ".agr"):
         return read_esri_ascii(path, column=HEIGHT)
@@ -227,6 +229,7 @@ def normals_of(slope: Slope, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
 
 
 def _gradients(slope: Profile | Terrain, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Slopes dz/dx and dz/dy of the surface at places (m); dz/dy is 0 for a profile."""
     if isinstance(slope, Terrain):
         return slope.surface.gradients(x, y)
     return slope.gradients(x), np.zeros_like(x)

@@ -107,6 +107,7 @@ class PathEstimate:
         return _interval(np.maximum(self._lengths(inside, with_heights=with_heights).sum(axis=1), 0.0))
 
     def _nodes_inside(self, start: float, end: float) -> slice:
+        """Slice of the nodes from one time to another (s), both included."""
         first, last = np.searchsorted(self.time, [start - 1e-9, end + 1e-9]).tolist()
         return slice(first, last)
 

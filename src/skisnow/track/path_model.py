@@ -53,7 +53,7 @@ class TimeScales(NamedTuple):
     """Longest step between nodes, and correlation time T of the acceleration along the path (s)."""
 
     longest_step: float
-    speed_time: float
+    correlation_time: float
 
 
 class MotionParameters(NamedTuple):
@@ -152,8 +152,8 @@ class PathModel:
         self.step: FloatArray = np.repeat(np.diff(time) / counts, counts)
         self.time: FloatArray = np.interp(np.arange(self.count), self.points, time)
         self.place = place
-        dynamics = np.array([[0.0, 1.0], [0.0, -1.0 / scales.speed_time]])
-        self._speed = Chain(dynamics, 2.0 / scales.speed_time, self.step)  # acceleration of unit variance
+        dynamics = np.array([[0.0, 1.0], [0.0, -1.0 / scales.correlation_time]])
+        self._speed = Chain(dynamics, 2.0 / scales.correlation_time, self.step)  # acceleration of unit variance
         self._turns: dict[float, Chain] = {}
 
     def initial_state(self, place_noise: float) -> FloatArray:

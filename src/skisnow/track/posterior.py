@@ -71,6 +71,7 @@ class _Search:
         self.model, self.period = model, period
 
     def parameters(self, logs: FloatArray, acceleration: float) -> MotionParameters:
+        """Parameters of the motion from logarithms of place noise, turn rate and drift, and an acceleration (m/s²)."""
         place_noise, turn_rate, drift = np.exp(logs).tolist()
         return MotionParameters(place_noise, turn_rate, self.period, acceleration, drift)
 

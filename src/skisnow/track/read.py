@@ -96,6 +96,7 @@ def recognise_format(data: bytes, suffix: str) -> TrackFormat:
 
 
 def _read_bytes(path: Path) -> bytes:
+    """Bytes of a file, UTF-16 converted to UTF-8; rejects an empty or unreadable file, a folder or a pipe."""
     try:
         # reading a pipe would block, and a folder cannot be read
         data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
@@ -112,6 +113,7 @@ def _read_bytes(path: Path) -> bytes:
 
 
 def _read_recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
+    """Recording from the bytes of a file by the reader of its format; rejects packed and unknown files."""
     if kind == "fit":
         return read_fit(data, name)
     if kind == "ubx":

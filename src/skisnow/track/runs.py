@@ -162,7 +162,7 @@ def _zone_margin(drop: float) -> float:
 
 
 def _moving_stretches(track: Track, motion: TrackMotion, height: FloatArray | None) -> Iterator[Stretch]:
-    """Stretches in motion, short stops included."""
+    """Stretches of 10 m or more in motion, stops up to 30 s included; `height` (m): for their descents."""
     moving = np.flatnonzero((motion.speed >= STANDING) & track.usable)
     if not len(moving):
         return
@@ -175,6 +175,7 @@ def _moving_stretches(track: Track, motion: TrackMotion, height: FloatArray | No
 
 
 def _make_stretch(track: Track, motion: TrackMotion, height: FloatArray | None, first: int, last: int) -> Stretch:
+    """Stretch from point `first` to `last` with distance (m), descent (None without heights), and highest speed."""
     inside = slice(first, last + 1)
     start, end = float(track.time[first]), float(track.time[last])
     distance, distance_interval = float(motion.arc_length[last] - motion.arc_length[first]), None

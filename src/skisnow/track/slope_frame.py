@@ -117,6 +117,7 @@ def _rotate(vectors: FloatArray, axes: FloatArray, missing_height: str) -> Float
 def _require_frame_arguments(
     track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray
 ) -> None:
+    """Reject a track in a slope's frame, and an azimuth, a slope angle (rad) or an origin (m) out of range."""
     if track.axes == "slope":
         raise ParameterError("the track {name} is in a slope's frame already: {frame}").tag(
             "already_on_slope", name=track.name, frame=track.frame
@@ -137,6 +138,7 @@ def _require_frame_arguments(
 
 
 def _frame_words(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> str:
+    """Text with the axes, the fall line's azimuth and the origin of a slope's frame."""
     east, north, up = (float(value) for value in origin)
     axes = (
         "x horizontal distance down the fall line, y to the left, z height"

@@ -139,6 +139,7 @@ def window_bounds(time: FloatArray, part: IntArray, length: float) -> tuple[IntA
 
 
 def _median_step(time: FloatArray) -> float:
+    """Median of the steps between times (s)."""
     return float(np.median(np.diff(time)))
 
 
@@ -156,6 +157,7 @@ def _require_sparse(track: Track, windows: tuple[IntArray, IntArray], length: fl
 
 
 def _require_positive(name: str, unit: str, value: float | None) -> None:
+    """Reject a number that is not above 0 and finite; None is accepted."""
     if value is not None and not (np.isfinite(value) and value > 0.0):
         raise ParameterError("{name} is {value:g} {unit}. Allowed: above 0").tag(
             "out_of_range", name=name, value=value, unit=unit
@@ -176,6 +178,7 @@ def _places(track: Track, usable: BoolArray) -> WeightedValues:
 
 
 def _weighted_velocities(track: Track, usable: BoolArray) -> WeightedValues | None:
+    """Horizontal velocities (m/s) with weights by their stated accuracy; None if too few points have one."""
     if track.velocity is None:
         return None
     has_velocity = usable & np.isfinite(track.velocity[:, :2]).all(axis=1)

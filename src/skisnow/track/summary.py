@@ -63,6 +63,7 @@ class TrackSummary(Shown):
     remarks: tuple[str, ...]
 
     def _repr_facts(self) -> Facts:
+        """Title, and rows with points, distance, highest speed, runs, turns and remarks."""
         distances = ", ".join(f"{amount(distance, 'm')} by {name}" for name, distance in self.distances.items())
         rows = (
             ("points", str(len(self.track))),
@@ -128,10 +129,12 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
 
 
 def _shown_interval(interval: tuple[float, float] | None, unit: str) -> str:
+    """Interval in brackets with its unit, after a space; "" for None."""
     return "" if interval is None else f" ({interval[0]:.5g} to {interval[1]:.5g} {unit})"
 
 
 def _distances_by_source(track: Track, motion: TrackMotion) -> dict[str, float]:
+    """Distances (m) of the track, each by its source: places, recorded speed, odometer."""
     if motion.path is not None and motion.arc_length_source == "places":
         return {"places": motion.path.length().value}
     ways = {"places": places_arc_length(track, motion.smoothed)}
@@ -143,6 +146,7 @@ def _distances_by_source(track: Track, motion: TrackMotion) -> dict[str, float]:
 
 
 def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
+    """Remarks about omitted points, contradicting distances, missing speeds, segments and gaps."""
     remarks = [f"Not used: {count} {words}." for words, count in track.left_out.items()]
     chosen = distances[motion.arc_length_source]
     for name, distance in distances.items():
@@ -215,6 +219,7 @@ def half_wavelength(summary: TrackSummary) -> float | None:
 
 
 def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:
+    """JSON of a stretch; its descent (m), multiplied by `sign`, has the key `height_key`."""
     return {
         "start_s": json_number(stretch.start),
         "end_s": json_number(stretch.end),
@@ -228,10 +233,12 @@ def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:
 
 
 def _interval_list(interval: tuple[float, float] | None) -> list[float | None] | None:
+    """Both ends of an interval for JSON; None without one."""
     return None if interval is None else [json_number(end) for end in interval]
 
 
 def _turn_dict(turn: Turn) -> Json:
+    """JSON of a turn: times (s), angle (°), radii (m), length (m), and the share that passed the smoothing."""
     return {
         "start_s": json_number(turn.start),
         "end_s": json_number(turn.end),

@@ -101,6 +101,7 @@ class Track(Shown):
         return len(self.time)
 
     def _repr_facts(self) -> Facts:
+        """Title, and rows with points, flags, ranges of places and speeds, start and frame."""
         flagged = ", ".join(f"{count} {code}" for code, count in self.flagged.items())
         duration = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
         rows = (
@@ -313,4 +314,5 @@ def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
 
 
 def _has_carrier_phase(solution: SolutionArray) -> bool:
+    """True if any point has a fixed or float solution."""
     return bool(np.isin(solution, ("fixed", "float")).any())

@@ -81,7 +81,7 @@ def find_turns(
     starts = [motion.time[piece.first] for piece in pieces]
     ends = [motion.time[piece.last] for piece in pieces]
     for number, (one, other) in enumerate(pairwise(pieces)):
-        if one.sign != other.sign and _join(motion, one, other, patience):
+        if one.sign != other.sign and _are_adjacent(motion, one, other, patience):
             ends[number] = starts[number + 1] = _switch_time(motion, one.last, other.first)
     spans = zip(pieces, starts, ends, strict=True)
     return tuple(_make_turn(motion, piece, float(start), float(end)) for piece, start, end in spans)
@@ -111,15 +111,15 @@ def _merge_pieces(motion: TrackMotion, pieces: list[_Piece], least_angle: float,
     """Remove pieces that turn too little, and merge neighbours to the same side with only such a piece between them."""
     merged: list[_Piece] = []
     for piece in pieces:
-        if merged and merged[-1].sign == piece.sign and _join(motion, merged[-1], piece, patience):
+        if merged and merged[-1].sign == piece.sign and _are_adjacent(motion, merged[-1], piece, patience):
             merged[-1] = _Piece(merged[-1].first, piece.last, piece.sign)
         elif abs(motion.heading[piece.last] - motion.heading[piece.first]) >= least_angle:
             merged.append(piece)
     return merged
 
 
-def _join(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> bool:
-    """True if two pieces are separated only by a short stretch in motion."""
+def _are_adjacent(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> bool:
+    """True if at most `patience` (s), without a rest or a gap, is between two pieces of turns."""
     between = slice(one.last, other.first + 1)
     moving = np.isfinite(motion.curvature[between]) | ~motion.smoothed.usable[between]
     together = motion.smoothed.part[one.last] == motion.smoothed.part[other.first]
@@ -137,6 +137,7 @@ def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
 
 
 def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
+    """Turn from `start` to `end` (s) about the sharpest point of a piece, with radii (m) and 95 % interval."""
     sharpest = _sharpest(motion, piece)
     headings, errors = _at_times(motion, (start, end))
     length = float(np.diff(np.interp((start, end), motion.time, motion.arc_length))[0])

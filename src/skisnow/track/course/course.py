@@ -150,10 +150,12 @@ class Course(Shown):
         return float(np.linalg.norm(np.diff([gate.turning for gate in self.gates], axis=0), axis=1).sum())
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of gates, the length from pole to pole (m), and the source."""
         return Facts(f"{len(self.gates)} gates, {amount(self.length, 'm')} from pole to pole: {self.source}")
 
 
 def _gate_line(gate: Gate, along: FloatArray) -> GateLine:
+    """Line of a gate from its turning pole: to the outer pole, or without one perpendicular to `along`."""
     turn = 1.0 if gate.side == "left" else -1.0
     pole = np.array(gate.turning)
     if gate.outer is None:

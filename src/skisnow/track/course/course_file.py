@@ -82,6 +82,7 @@ def read_course(
 
 
 def _gate_of_row(row: CsvRow) -> Gate:
+    """Gate of a table's row; rejects an unknown side, a missing name, and half an outer pole."""
     side = row.cells["side"].lower()
     if side not in ("left", "right"):
         raise row.refused(
@@ -112,6 +113,7 @@ def _gate_of_row(row: CsvRow) -> Gate:
 def _geodetic_course(
     waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, options: dict[str, Any]
 ) -> Course:
+    """Course in metres east and north of an origin (default: the first waypoint); each waypoint must have a side."""
     if not waypoints:
         raise ParameterError("there is no waypoint; write one for each gate, in order").tag("no_waypoint")
     first = waypoints[0]
@@ -195,6 +197,7 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
 
 
 def _read_waypoint(path: str | Path, row: int, point: Element) -> Waypoint:
+    """Waypoint from a GPX element; its side is the first "left" or "right" in its texts, None without one."""
     name = point.text_of("name") or str(row)
     words = (_SIDE.search(point.text_of(key)) for key in _SAYS)
     side = next((word[1].lower() for word in words if word), None)
@@ -205,6 +208,7 @@ def _read_waypoint(path: str | Path, row: int, point: Element) -> Waypoint:
 
 
 def _waypoint_number(path: str | Path, row: int, what: str, text: str | None, limit: float) -> float:
+    """Number in the value `what` of a waypoint; an error outside ±`limit`; only "ele" may be NaN."""
     try:
         value = float(text or "")
     except ValueError:

@@ -118,6 +118,7 @@ def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str
 
 
 def _gate_rows(place: Path) -> list[dict[str, Any]]:
+    """Rows of a run's table of gates: time (s; None if blank) and place (m); rejects an unknown outcome."""
     table = []
     columns = ("gate", "outcome", "time_s", "x_m", "y_m")
     for row in csv_rows(place, columns, action=Message("Simulate the run again with --out.")):

@@ -97,6 +97,7 @@ class CourseResult(Shown):
         return next((passage for passage in self.passages if passage.outcome != "passed"), None)
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of gates passed; rows with the course, the time between gates, and the first fault."""
         first, last = self.passages[0].time, self.passages[-1].time
         rows = [("course", repr(self.course).strip("<>"))]
         if first is not None and last is not None:
@@ -132,6 +133,7 @@ def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoin
 def _find_passage(
     gate: Gate, line: GateLine, after: float, middle: MovingPoint, parts: Mapping[str, MovingPoint]
 ) -> Passage:
+    """First crossing after a time (s) that passes the gate, else the first forward one, or the reason for none."""
     crossings = middle.crossings(line)
     near = [crossing for crossing in crossings if crossing.time > after and abs(crossing.aside) <= FARTHEST]
     tried = [crossing for crossing in near if crossing.forward]
@@ -148,6 +150,7 @@ def _find_passage(
 
 
 def _judge_crossing(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingPoint]) -> Passage:
+    """Passage of a gate at one crossing, with the clearance (m) to the nearer pole."""
     aside = {name: _lateral_position(line, at, part) for name, part in parts.items()}
     low, high = min(aside.values()), max(aside.values())
     clearance = min(low, line.width - high)
@@ -222,6 +225,7 @@ class MovingPoint:
         return [self._crossing(int(i), line) for i in np.flatnonzero(np.diff(beyond.astype(np.int8)) != 0)]
 
     def _crossing(self, i: int, line: GateLine) -> Crossing:
+        """Crossing of a gate's line between the points i and i + 1, interpolated; it assumes that there is one."""
         step = float(self.time[i + 1] - self.time[i])
         first, last = (float((self.place[j] - line.pole) @ line.along) for j in (i, i + 1))
         rates = (step * float(self.velocity[j] @ line.along) for j in (i, i + 1))

@@ -134,6 +134,7 @@ def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
 
 
 def _time_of_message(message: Any) -> datetime | None:
+    """UTC time of a UBX message; None if its date or time is invalid."""
     if not (message.validDate and message.validTime):
         return None
     try:
@@ -274,6 +275,7 @@ def _files(data: bytes) -> tuple[list[bytes], int]:
 
 
 def _decode_messages(data: bytes, name: str, records: _Records) -> None:
+    """Add every data frame of a FIT file to `records`; rejects a damaged file."""
     import fitdecode
 
     try:

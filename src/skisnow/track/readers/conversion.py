@@ -137,6 +137,7 @@ def _projected(
 
 
 def _require_points(recording: Recording) -> None:
+    """Reject a recording without any point, or without one that has a place and a fix."""
     if not len(recording.time):
         value = ", ".join(f"{count} {words}" for words, count in recording.left_out.items() if count) or None
         action = Message("The file has no point; was anything recorded?")
@@ -148,6 +149,7 @@ def _require_points(recording: Recording) -> None:
 
 
 def _require_time(recording: Recording) -> None:
+    """Reject a recording in which the time falls from one point to the next."""
     falls = np.flatnonzero(np.diff(recording.time) < 0.0)
     if len(falls):
         point = int(falls[0]) + 1
@@ -158,6 +160,7 @@ def _require_time(recording: Recording) -> None:
 
 
 def _time_text(recording: Recording, point: int) -> str:
+    """Time of a point as a text: date and time in UTC, or seconds if the recording has no date."""
     seconds = float(recording.time[point] - recording.time[0])
     if recording.start is None:
         return f"{seconds + recording.first_time:.12g} s"
@@ -225,6 +228,7 @@ def _between_neighbours(time: FloatArray, fix: BoolArray) -> BoolArray:
 
 
 def _select_points(recording: Recording, used: BoolArray, left_out: dict[str, int]) -> Recording:
+    """Recording of the used points only, from the first of them, with new counts of omitted points."""
     if used.all():
         return replace(recording, left_out=left_out)
     arrays: dict[str, Any] = {}

@@ -63,6 +63,7 @@ class _Reader:
         self._text: list[str] | None = None
 
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
+        """Handle an opening tag: begin a segment, a point or a text, or count an element of another kind."""
         self._text = None
         self._path.append(name.rsplit("}", 1)[-1])
         self._count += 1
@@ -86,10 +87,12 @@ class _Reader:
             self._text = []
 
     def text(self, text: str) -> None:
+        """Collect characters if the open element is one of a point's texts."""
         if self._text is not None:
             self._text.append(text)
 
     def end(self, _name: str) -> None:
+        """Handle a closing tag: store the collected text in the last point, unless it has one already."""
         key = self._key()
         if key is not None and self._text is not None:
             self.points[-1].texts.setdefault(key, "".join(self._text).strip())
@@ -101,6 +104,7 @@ class _Reader:
         self._refuse(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
 
     def _refuse(self, value: str, allowed: str) -> NoReturn:
+        """Raise an error for a file that cannot be read."""
         raise track_error("unreadable_file", self._name, allowed, value=value)
 
     def _key(self) -> str | None:
@@ -155,6 +159,7 @@ def read_gpx(text: str, name: str) -> Recording:
 
 
 def _read_points(text: str, name: str) -> list[_Point]:
+    """Points of a GPX or TCX file; rejects damaged XML, and files with only waypoints, routes or courses."""
     reader, parser = _Reader(name), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
@@ -172,6 +177,7 @@ def _read_points(text: str, name: str) -> list[_Point]:
 
 
 def _required_time(point: _Point, name: str, place: int) -> datetime:
+    """UTC time of a point; rejects a point without one."""
     text = point.texts.get("time", "")
     time = moment(text.upper())
     if time is None:

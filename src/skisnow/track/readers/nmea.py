@@ -68,6 +68,7 @@ class _Epoch:
 
     @property
     def second_of_day(self) -> float:
+        """Time of day in seconds after midnight."""
         at = self.time
         return at.hour * 3600.0 + at.minute * 60.0 + at.second + at.microsecond * 1e-6
 
@@ -112,6 +113,7 @@ class _Epoch:
         return True
 
     def _take_speed(self, speed: float, course: float) -> None:
+        """Set speed and course, each only if it has no value yet."""
         if math.isnan(self.speed):
             self.speed = speed
         if math.isnan(self.course):
@@ -142,6 +144,7 @@ def read_nmea(data: bytes, name: str) -> Recording:
 
 
 def _has_place(epoch: _Epoch) -> bool:
+    """True if the epoch has a sentence that contains a place."""
     return any(kind in PLACES for _, kind in epoch.seen)
 
 
@@ -152,6 +155,7 @@ def _make_recording(
     start: datetime | None,
     counts: dict[str, int],
 ) -> Recording:
+    """Recording of a file's epochs, with their times (s) and the counts of omitted sentences."""
     course = np.array([epoch.course for epoch in epochs]) * DEGREE
     speed = np.array([epoch.speed for epoch in epochs])
     velocity = np.column_stack([speed * np.sin(course), speed * np.cos(course), np.full(len(epochs), np.nan)])
@@ -178,6 +182,7 @@ def _make_recording(
 
 
 def _read_epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
+    """Sentences of a file grouped by their time of day; counts those without a time or of another talker."""
     epochs: list[_Epoch] = []
     for row, message, has_not_finite_cell in sentences(data, counts):
         at = getattr(message, "time", "")
@@ -232,6 +237,7 @@ def _times(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
 
 
 def _heights_and_reference(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]], str]:
+    """Heights (m) and their reference: the ellipsoid if each height has a geoid separation, otherwise sea level."""
     height = np.array([epoch.height for epoch in epochs])
     separation = np.array([epoch.separation for epoch in epochs])
     if np.isfinite(height).any() and np.isfinite(separation[np.isfinite(height)]).all():
@@ -257,6 +263,7 @@ def _solution(message: Any) -> Solution:
 
 
 def _number(message: Any, name: str) -> float:
+    """Number in a sentence's field; NaN if it is blank, no number or not finite."""
     value = getattr(message, name, "")
     try:
         read = float(value) if isinstance(value, int | float) else math.nan
@@ -266,6 +273,7 @@ def _number(message: Any, name: str) -> float:
 
 
 def _whole_date(message: Any) -> date | None:
+    """Date in a sentence; None if it is missing, impossible, or outside of the accepted years."""
     try:
         day = date(int(message.year), int(message.month), int(message.day))
     except (AttributeError, ValueError, OverflowError):
@@ -317,6 +325,7 @@ def sentences(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any, b
 
 
 def _decode_sentence(content: str) -> Any:
+    """Parsed sentence from the text between "$" and "*"; None if it cannot be decoded."""
     from pynmeagps import NMEAReader, calc_checksum
 
     try:

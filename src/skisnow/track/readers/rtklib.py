@@ -146,6 +146,7 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
 
 
 def _parse_moment(cells: list[str], scale: str) -> datetime | None:
+    """Time in the first two cells, as date and time or as GPS week and second; None if they are no time."""
     if len(cells) < 2:
         return None
     try:
@@ -164,6 +165,7 @@ def _parse_moment(cells: list[str], scale: str) -> datetime | None:
 
 
 def _stack_vectors(columns: dict[str, FloatArray], prefix: str) -> FloatArray | None:
+    """Three columns with a common prefix as an (n, 3) array; None unless all three are in the file."""
     names = [f"{prefix}{axis}" for axis in AXES]
     return np.column_stack([columns[name] for name in names]) if {*names} <= columns.keys() else None
 

@@ -140,6 +140,7 @@ class _Table:
             raise self._missing_error("time" if self.is_geodetic else "time_s")
 
     def _missing_error(self, column: str) -> Exception:
+        """Error for a missing column, with the header and the accepted forms of tables."""
         place, value = f"row {self.cells.header_line}", ", ".join(self.cells.header)
         allowed, action = Message("the columns {forms}", forms=_FORMS), Message("Name the column in the header.")
         return track_error("missing_column", self.name, allowed, action, place=place, column=column, value=value)
@@ -177,6 +178,7 @@ class _Table:
         return values
 
     def numbers_if_present(self, name: str) -> FloatArray | None:
+        """Numbers of a column; None if the table has no such column."""
         return self.numbers(name) if name in self.columns else None
 
     def vectors(self, names: tuple[str, ...]) -> FloatArray:
@@ -204,6 +206,7 @@ class _Table:
         return np.array([(read - times[0]).total_seconds() for read in times]), times[0], None
 
     def _time_error(self, place: int, column: str, cell: str, also: str = _IN_EVERY_ROW) -> Exception:
+        """Error for a cell that is no time, with the accepted forms; `also` is a further condition."""
         what = (
             Message("a number in {unit}", unit=_unit(column, self.columns[column].factor))
             if column == "time_s"
@@ -213,6 +216,7 @@ class _Table:
         return self._cell_error(code, place, column, cell, joined([what, also]))
 
     def _cell_error(self, code: str, place: int, column: str, cell: str, allowed: Message) -> Exception:
+        """Error for a cell, with its row, its column's heading and its text."""
         row = f"row {self.cells.lines[place]}"
         return track_error(code, self.name, allowed, place=row, column=self.heading(column), value=cell)
 
