@@ -59,6 +59,7 @@ def carved_skis(contents: Json) -> Figure:
 
 
 def _inputs_in_words(answer: Json) -> str:
+    """Text of an answer's angle, load and snow; "At rest" or "Steady carve"."""
     inputs = answer["inputs"]
     words: list[str] = [
         Message("ϑ = {angle:g}°, load {load:g} N", angle=inputs["edge_angle_deg"], load=inputs["load_N"]),
@@ -74,6 +75,7 @@ def _inputs_in_words(answer: Json) -> str:
 
 
 def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
+    """Draw the values `key` of each answer along the ski, and the snow's surface for the edge depth."""
     for place, answer in enumerate(answers):
         if answer[key] is not None:
             axes.plot(answer["station_m"], _with_nan(answer[key]), **line_style(place))
@@ -157,4 +159,5 @@ def arc_through(station: FloatArray, line: FloatArray, rear: float, front: float
 
 
 def _with_nan(values: list[float | None]) -> FloatArray:
+    """Numbers with NaN for None."""
     return np.array([np.nan if value is None else value for value in values])

@@ -53,6 +53,7 @@ def plain(value: float | None, digits: int = 3) -> str:
 
 
 def _signed(text: str, style: Style) -> str:
+    """Number with a minus sign and local decimal sign if typeset; unchanged in plain text."""
     return local_number(text.replace("-", "−")) if style == "typeset" else text
 
 
@@ -170,6 +171,7 @@ class _HtmlFormatter(LocalFormatter):
     """Formatter for numbers of a language, which escapes all values except Markup for HTML."""
 
     def format_field(self, value: Any, format_spec: str) -> str:
+        """HTML of a field: markup unchanged, all else formatted and escaped."""
         return value if isinstance(value, Markup) else Markup.escape(super().format_field(value, format_spec))
 
 

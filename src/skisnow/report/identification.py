@@ -112,6 +112,7 @@ def _headline(result: Identification) -> Markup:
 
 
 def _method_sentences(result: Identification) -> list[Markup]:
+    """Sentences about data, methods, and the number of simulations with the time they took."""
     effort = result.effort
     runs = counted(effort.simulations, "{count} simulated run", "{count} simulated runs")
     rounds = counted(effort.rounds, "{count} Jacobian", "{count} Jacobians")
@@ -266,6 +267,7 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
 
 
 def _measured_mask(fit: Fit, i: int) -> BoolArray:
+    """True where column i of a fit has a measured value and its standard deviation."""
     return np.isfinite(fit.measured[:, i]) & np.isfinite(fit.sd[:, i])
 
 

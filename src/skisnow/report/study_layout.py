@@ -199,8 +199,10 @@ def label_outside(panels: Sequence[Axes], columns: int, x: str, y: str) -> None:
 
 
 def _distinct(table: StudyTable, name: str) -> list[Any]:
+    """Different values of a column, in the order of the rows."""
     return list(dict.fromkeys(row[name] for row in table.rows))
 
 
 def _is_number(value: Any) -> bool:
+    """True for an int or float that is not a bool."""
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -101,6 +101,7 @@ def share_of_limit(row: Json) -> float:
 
 
 def _draw_field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    """Fill areas by the side force's share of its limit on a grid, with a line where it is 1."""
     second = str(layout.second)
     x, y = (np.array(sorted({float(row[name]) for row in rows})) for name in (layout.x, second))
     share = np.full((len(y), len(x)), np.nan)
@@ -114,6 +115,7 @@ def _draw_field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
 
 
 def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    """Draw a mark for each row: holds, slips, or no equilibrium."""
     for holds, look in _marker_styles(layout.sampled).items():
         chosen = [row for row in rows if row["holds"] is holds]
         x, y = _numbers(chosen, layout.x), _numbers(chosen, str(layout.second))
@@ -121,6 +123,7 @@ def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
 
 
 def _marker_styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
+    """Marker style by `holds`: True, False, or None without an equilibrium; larger for samples."""
     size = 3.6 if sampled else 2.4
     return {
         True: {"marker": "o", "color": BLUE, "markersize": size},
@@ -130,6 +133,7 @@ def _marker_styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
 
 
 def _draw_share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    """Draw the share of the limit over one input, with a line at 1."""
     ordered = sorted(rows, key=lambda row: float(row[layout.x]))
     axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
     for holds, look in _marker_styles(True).items():
@@ -147,6 +151,7 @@ def _set_scales(axes: Axes, rows: Sequence[Json], x: str, y: str | None) -> None
 
 
 def _draw_colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
+    """Draw the colour bar of the share of the limit, with a line at 1."""
     bounds = [LEVELS[0] / 2.0, *LEVELS, LEVELS[-1] * 2.0]
     scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
     bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
@@ -156,6 +161,7 @@ def _draw_colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
 
 
 def _grip_handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
+    """Legend entries of the marks that occur, and of the limit if it is crossed."""
     texts = {True: Message("holds"), False: Message("slips"), None: Message("no equilibrium")}
     handles = [
         Line2D([], [], linestyle="none", label=texts[holds], **line_style)
@@ -204,10 +210,12 @@ def radius_map(table: StudyTable) -> Figure:
 
 
 def _has_lines(layout: MapLayout, values: list[Any]) -> bool:
+    """True if the radius is drawn as lines: the table is no sample and has few values of the second input."""
     return not layout.sampled and len(values) <= MOST_LINES
 
 
 def _draw_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any]) -> None:
+    """Draw the radius over the first input, one line per value of the second; open marks slip."""
     for value, of_line in lines_of(rows, layout.second):
         look = _line_look(values.index(value))
         ordered = sorted(of_line, key=lambda row: float(row[layout.x]))
@@ -219,6 +227,7 @@ def _draw_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: lis
 
 
 def _line_look(place: int) -> dict[str, Any]:
+    """Colour and marker of a line by its number, repeating after the last one."""
     return {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
 
 
@@ -231,6 +240,7 @@ def _colour_scale(layout: MapLayout, rows: Sequence[Json]) -> ScalarMappable | N
 
 
 def _draw_cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, scale: ScalarMappable | None) -> None:
+    """Draw the radius as points, coloured by the second input if there is a scale; crosses slip."""
     for holds, marker in ((True, "o"), (False, "X")):
         chosen = [row for row in rows if row["holds"] is holds]
         x, y = _numbers(chosen, layout.x), _numbers(chosen, RADIUS)
@@ -252,6 +262,7 @@ def _draw_sidecut(axes: Axes, rows: Sequence[Json]) -> None:
 
 
 def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) -> list[Line2D]:
+    """Legend entries of lines and marks that occur, and of sidecut radius × cos ϑ over the edge angle."""
     handles = []
     lined = _has_lines(layout, values)
     if lined and layout.second is not None:
@@ -274,4 +285,5 @@ def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) 
 
 
 def _numbers(rows: Sequence[Json], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Column of the rows, shape (n,), NaN for None."""
     return np.array([np.nan if row[name] is None else float(row[name]) for row in rows])

@@ -68,6 +68,7 @@ def carve_summary(contents: Json) -> str:
 
 
 def _snow_in_words(answer: Json) -> str:
+    """Text of a snow's numbers with intervals and source; k_u/H_V is left out at rest."""
     inputs = answer["inputs"]
     words = [f"H_V {_with_interval(answer, 'H_V', 'N_per_mm3')} N/mm3"]
     if inputs["S_f_N_per_mm2"] is not None:
@@ -78,12 +79,14 @@ def _snow_in_words(answer: Json) -> str:
 
 
 def _with_interval(answer: Json, symbol: str, unit: str) -> str:
+    """Value of an input with its interval, if it has one."""
     value = plain(answer["inputs"][f"{symbol}_{unit}"])
     ends = answer["snow"][f"{symbol}_interval_{unit}"]
     return value if ends is None else f"{value} [{', '.join(plain(end) for end in ends)}]"
 
 
 def _model_in_words(inputs: Json) -> str:
+    """Text of the model's choices; those of the side force are left out at rest."""
     words = [f"clamp length {plain(inputs['clamp_length_m'])} m"]
     if inputs["footprint_stiffness_N_per_mm2"] is not None:
         words.append(f"footprint stiffness {plain(inputs['footprint_stiffness_N_per_mm2'])} N/mm²")
@@ -96,14 +99,17 @@ def _model_in_words(inputs: Json) -> str:
 
 
 def _yes_or_no(value: bool) -> str:
+    """English word, "yes" or "no", for True or False."""
     return "yes" if value else "no"
 
 
 def _maximum_of_key(key: str, *, by: Callable[[float], float] = float) -> Callable[[Json], float | None]:
+    """Function that returns the maximum of an answer's list `key`, compared by `by`; None without values."""
     return lambda answer: max((value for value in answer[key] or () if value is not None), key=by, default=None)
 
 
 def _ski_number(key: str) -> Callable[[Json], float | None]:
+    """Function that returns the number `key` of an answer's ski."""
     return lambda answer: answer["ski"][key]
 
 
@@ -136,6 +142,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
 
 
 def _carve_table(answers: list[Json]) -> Iterator[str]:
+    """Lines of the table of answers; differences to the first ski in percent, titles for two skis or more."""
     titles = ski_titles(answers)
     cells = [["", *titles, *(f"{title}/%" for title in titles[1:])]]
     for name, of in _ROWS:

@@ -109,6 +109,7 @@ def table_csv(table: Table) -> str:
 
 
 def _csv_cells(column: Column, values: Sequence[Any]) -> list[Sequence[str]]:
+    """CSV columns of a table's column: two for an interval, three for an estimate, otherwise one."""
     if column.kind in ("interval", "range"):
         return _digits_of_ends(values)
     if column.kind == "estimate":
@@ -119,6 +120,7 @@ def _csv_cells(column: Column, values: Sequence[Any]) -> list[Sequence[str]]:
 
 
 def _digits_of_ends(pairs: Sequence[Any]) -> list[Sequence[str]]:
+    """CSV columns of the lower and upper ends of intervals; empty cells for None."""
     return [_digits([None if pair is None else pair[end] for pair in pairs]) for end in (0, 1)]
 
 
@@ -127,17 +129,19 @@ def _digits(values: Sequence[float | None]) -> list[str]:
     return orjson.dumps(values).decode("ascii")[1:-1].replace("null", "").split(",") if values else []
 
 
-def _value_text(value: Any) -> str:
+def _csv_text_cell(value: Any) -> str:
+    """Text of a CSV cell, protected from being read as a formula; "" for None."""
     return "" if value is None else protect_from_formulas(str(value))
 
 
 def _switch_text(value: bool) -> str:
+    """CSV text of a switch, "true" or "false"."""
     return "true" if value else "false"
 
 
 _CSV_TEXT: Final[dict[str, Callable[[Any], str]]] = {
-    "text": _value_text,
-    "words": _value_text,
+    "text": _csv_text_cell,
+    "words": _csv_text_cell,
     "yes": _switch_text,
     "tick": _switch_text,
     "codes": lambda codes: protect_from_formulas("; ".join(codes)),
@@ -180,6 +184,7 @@ def table_html(table: Table, *, number: int) -> Markup:
 
 
 def _header_html(column: Column) -> Markup:
+    """HTML of a column's header with its unit."""
     unit = Markup(" <small>{}</small>").format(html(column.unit)) if column.unit else Markup("")
     return Markup('<th scope="col" role="columnheader"{kind}>{text}{unit}</th>').format(
         kind=Markup(' class="n"') if column.numeric else Markup(""), text=html(column.header), unit=unit
@@ -187,6 +192,7 @@ def _header_html(column: Column) -> Markup:
 
 
 def _cell_html(column: Column, value: Any, index: int) -> Markup:
+    """HTML of a cell, a row header in the first column; a dash or the like for None."""
     content = Markup(formatting.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
     if index == 0:
         return Markup('<th scope="row" role="rowheader">{}</th>').format(content)
@@ -196,6 +202,7 @@ def _cell_html(column: Column, value: Any, index: int) -> Markup:
 
 
 def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:
+    """HTML of a number and, unless it is None, its interval."""
     number, pair = value
     ends = (
         Markup("") if pair is None else Markup(' <span class="i">{}</span>').format(formatting.interval(pair, digits))
@@ -204,6 +211,7 @@ def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:
 
 
 def _names_text(names: list[str]) -> Markup:
+    """The first names, and the number of the others."""
     listed = Markup(", ").join(names[:LISTED_NAMES])
     more = len(names) - LISTED_NAMES
     return prose("{listed} and {more} more", listed=listed, more=formatting.whole(more)) if more > 0 else listed
@@ -229,6 +237,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
 
 
 def _notes_below(table: Table) -> Markup:
+    """HTML of a table's note, and where all rows are if only the first are shown; empty without both."""
     cut = len(table.rows) - table.rows_in_html
     sentences = [html(table.note)] if table.note else []
     if cut > 0:

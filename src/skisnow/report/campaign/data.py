@@ -119,6 +119,7 @@ class ReportData:
         self, kind: Source, unit: float, part: PenetrationAnalysis | ShearAnalysis | None,
         values: Hardness | ShearStress | None,
     ) -> UsedTests:  # fmt: skip
+        """Used tests of a kind: values and 95 % intervals in `unit`, sites, densities; empty without an analysis."""
         density = self.analysis.observations[kind].columns[DENSITY_KEY]
         if part is None or values is None:
             return UsedTests(np.zeros(0, dtype=bool), np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=str), density)

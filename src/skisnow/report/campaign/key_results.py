@@ -80,6 +80,7 @@ def _unloading_sentence(data: ReportData) -> Markup | None:
 
 
 def _displacement_sentence(data: ReportData) -> Markup | None:
+    """Sentence with the mean shear displacement u_y (mm) of the last group; None if none was measured."""
     rows = data.results["shear"]["displacement"]
     if not rows:
         return None
@@ -132,6 +133,7 @@ def _hardness_by_relation(row: Json) -> Markup:
 
 
 def _values_at_sites(rows: list[Json], key: str, unit: str) -> Markup:
+    """Sites with their values of a key in `unit`; sites without a value are left out."""
     values = [Markup("{} {} {}").format(row["site"], _strong(row[key]), unit) for row in rows if row[key] is not None]
     return Markup("; ").join(values)
 
@@ -178,10 +180,12 @@ def _mean_sentence(data: ReportData, tests: UsedTests, key: str, experiments: st
 
 
 def _strong(value: float) -> Markup:
+    """Rounded number in bold."""
     return Markup("<strong>{}</strong>").format(significant(value))
 
 
 def _interval_text(pair: list[float] | None, unit: str, sites: int) -> Markup:
+    """95 % interval in parentheses with the kind of its scatter; without one, that the scatter is not known."""
     if pair is None:
         return prose(" (no interval: the scatter is not known)")
     if sites > 1:
@@ -190,6 +194,7 @@ def _interval_text(pair: list[float] | None, unit: str, sites: int) -> Markup:
 
 
 def _law_sentence(data: ReportData) -> Markup | None:
+    """Sentences with the selected law of the penetration force and its reason; None without a choice."""
     selected = data.results["penetration"]["selected"]
     if selected is None:
         return None
@@ -210,6 +215,7 @@ def _law_sentence(data: ReportData) -> Markup | None:
 
 
 def _relations_sentence(data: ReportData) -> Markup | None:
+    """Sentences listing significant, not significant and withheld regressions; None without any."""
     judged = [row for row in data.results["regressions"] if row["p"] is not None]
     withheld = [row for row in data.results["regressions"] if row["withheld"]]
     if not judged and not withheld:
@@ -244,6 +250,7 @@ def _significance(row: Json) -> str:
 
 
 def _regression_list(rows: list[Json]) -> Markup:
+    """Regressions in words with their p values, the first ones only; "none" for an empty list."""
     named = [
         prose(
             "{response} on {predictor}{group}{p}",

@@ -35,6 +35,7 @@ def formula(model_id: str) -> str:
 
 
 def _term_text(letter: str, form: str, measure: str) -> str:
+    """Term of a model's formula: `letter` is its coefficient, `measure` what this multiplies; "" for none."""
     terms = {"none": "", "one": measure, "constant": f"{letter}_0 {measure}"}
     return terms.get(form, f"({letter}_0 + {letter}_1 ϑ) {measure}")
 

@@ -195,6 +195,7 @@ def _dates(data: ReportData) -> str | None:
 
 
 def _stated_uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
+    """Texts of the gauge's resolution and stated uncertainties; "not stated" with what follows."""
     not_stated = Message("not stated, counted as 0")
     fields = {
         "gauge": ("gauge_resolution_mm", "mm", Message("not stated, so that no depth uncertainty is counted")),

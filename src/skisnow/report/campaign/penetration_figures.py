@@ -85,6 +85,7 @@ def shown_angles(data: ReportData) -> list[float]:
 
 
 def _angle_name(angle: float) -> str:
+    """Name of an edge angle (°), "edged" unless it is 0."""
     return "ϑ = 0°" if angle == 0 else str(Message("edged, ϑ = {angle:.4g}°", angle=angle))
 
 
@@ -130,6 +131,7 @@ def _draw_panel(
 
 
 def _force_caption(counts: list[tuple[float, int, int]], n_other: int, *, wide_range: bool) -> Markup:
+    """Caption of the loads; `counts`: edge angle (°), shown and total series of each panel."""
     panels = []
     for angle, shown, total in counts:
         words = template("{shown} of {total} ({angle})")
@@ -267,6 +269,7 @@ def _draw_hardness(plot: SitePlot, x: FloatArray) -> int:
 
 
 def _p_sentence(row: Json | None) -> Markup:
+    """Sentence with the p value of a regression; empty without one."""
     if row is None or row["p"] is None:
         return Markup("")
     return prose(" Linear regression over all: {p}.", p=p_equals(row["p"]))

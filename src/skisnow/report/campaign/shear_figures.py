@@ -105,7 +105,7 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
         for row in rows:
             if row["group"] in style.sites and _is_significant(row):
                 _draw_line(plot.axes, row, theta[mask & (site == row["group"])], colour=style.colour, x_unit=DEGREE)
-    _angle_axis(plot.axes)
+    _scale_angle_axis(plot.axes)
     plot.start_at_zero("y", stress, 1.08)
     judgements = (
         str(Message("{site}: n = {n}, too few different angles to judge", site=row["group"], n=row["n"]))
@@ -129,12 +129,14 @@ def _edge_angles(data: ReportData) -> FloatArray:
     return np.zeros(0) if tests is None else tests.edge_angle[data.sheared.used]
 
 
-def _angle_axis(axes: Axes) -> None:
+def _scale_angle_axis(axes: Axes) -> None:
+    """Set the x axis to edge angles from 0 to 95°, with a tick every 15° up to 90°."""
     axes.set_xlim(0.0, 95.0)
     axes.set_xticks(range(0, 91, 15))
 
 
 def _is_significant(row: Json) -> bool:
+    """True if a regression has a p value below the level of significance."""
     return row["p"] is not None and row["p"] < SIGNIFICANT
 
 
@@ -160,7 +162,7 @@ def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         curve = cutting_stress(upright / 2.0, theta * DEGREE, transverse_friction=friction)
         plot.axes.plot(theta, curve, color=BLACK, linewidth=width, zorder=2)
         plot.handles.append(Line2D([], [], color=BLACK, linewidth=width, label=label))
-    _angle_axis(plot.axes)
+    _scale_angle_axis(plot.axes)
     plot.axes.set_ylim(0.0, _HEADROOM * max(float(stress.max()), upright))
     caption = prose(
         "Tangential stress F_t/(L e) at {site}, the softest site of varied edge angle, against machining theory (Eqn "
@@ -196,6 +198,7 @@ def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | L
 
 
 def _line_in_words(row: Json) -> Markup:
+    """Sentences with a regression line on density ρ, its judgement and, by sites, its interval."""
     if row["withheld"]:
         judgement: str = Message("dashed because too few different densities allow no judgement")
     elif _is_significant(row):

@@ -240,6 +240,7 @@ def _force(fit: ModelFit, hardness: FloatArray, readings: Readings) -> FloatArra
 
 
 def _draw_ranges_by_load(axes: Axes, load: FloatArray, residual: FloatArray) -> None:
+    """Draw median, mean and 5 to 95 % range of the residuals for each group of loads (N)."""
     values = np.unique(load)
     edges = values if len(values) <= MOST_GROUPS else np.unique(np.quantile(load, np.arange(MOST_GROUPS) / MOST_GROUPS))
     group = np.searchsorted(edges, load, side="right") - 1

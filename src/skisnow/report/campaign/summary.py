@@ -43,6 +43,7 @@ def summary(analysis: Analysis) -> str:
 
 
 def _experiment_line(kind: str, rows: list[Json]) -> str:
+    """Line with the numbers of experiments, used and flagged ones, and of each flag."""
     if not rows:
         return f"{kind} experiments: none"
     used, flagged = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)

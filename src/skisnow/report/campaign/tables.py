@@ -172,6 +172,7 @@ def regressions_table(data: ReportData) -> Table:
 
 
 def _regression_row(row: Json) -> tuple[Any, ...]:
+    """Cells of a regression: names, group, count, estimates with intervals, interval by site, fit."""
     coefficients, intervals = row["b"] or (None, None), row["interval"] or (None, None)
     by_site = row["interval_by_site"]
     quantities = (QUANTITY[key] for key in (row["response"], row["terms"][1]))

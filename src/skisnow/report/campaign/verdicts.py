@@ -68,6 +68,7 @@ def quick_verdicts(campaign: Campaign, quantity: str) -> list[Message]:
 
 
 def _row_verdicts(rows: list[Json], difference: float) -> list[Message]:
+    """Sentences that compare groups; of many pairs a summary and the most certain of the others."""
     kinds: dict[tuple[str, str], list[Json]] = {}
     for row in rows:
         kinds.setdefault((row["quantity"], row["by"]), []).append(row)
@@ -84,6 +85,7 @@ def _row_verdicts(rows: list[Json], difference: float) -> list[Message]:
 
 
 def _survey_sentence(rows: list[Json], quantity: str, certain: int) -> Message:
+    """Sentence with the number of certain pairs of sites, and the sites with the largest and smallest values."""
     won = Counter(row["group_a"] if row["ratio"] > 1.0 else row["group_b"] for row in rows)
     lost = Counter(row["group_b"] if row["ratio"] > 1.0 else row["group_a"] for row in rows)
     largest, smallest = won.most_common(1)[0][0], lost.most_common(1)[0][0]
@@ -92,10 +94,12 @@ def _survey_sentence(rows: list[Json], quantity: str, certain: int) -> Message:
 
 
 def _is_number(value: float | None) -> bool:
+    """True for a finite number; False for None."""
     return value is not None and math.isfinite(value)
 
 
 def _is_certain(row: Json) -> bool:
+    """True if the p value, corrected for the number of pairs, is below the level."""
     return _is_number(row["p_holm"]) and bool(row["p_holm"] < LEVEL)
 
 
@@ -136,6 +140,7 @@ def verdict(row: Json, difference_percent: float) -> Message:
 
 
 def _p_text(p: float) -> Message:
+    """Text of a p value, "p < 0.001" if it is below."""
     return Message("p < 0.001") if p < 0.001 else Message("p = {p:.2g}", p=p)
 
 
@@ -164,6 +169,7 @@ def caveats(data: ReportData) -> list[Markup]:
 
 
 def _missing_uncertainties(data: ReportData) -> Iterator[Message]:
+    """Sentences about uncertainties that are not stated, and what this means for the intervals."""
     campaign = data.results["campaign"]
     if campaign["gauge_resolution_mm"] is None and data.has_tests:
         yield Message(
@@ -181,6 +187,7 @@ def _missing_uncertainties(data: ReportData) -> Iterator[Message]:
 
 
 def _missing_data(data: ReportData) -> Iterator[Message]:
+    """Sentences about tests and columns that the campaign does not have, and about a chosen plain wedge."""
     if not data.penetration:
         yield Message("The campaign has no penetration experiments: there is no H_V and no choice between laws.")
     if not data.shear:
@@ -262,4 +269,5 @@ def unloading_finding(data: ReportData) -> Markup:
 
 
 def _table_file(name: str, data: ReportData) -> Markup:
+    """File name of a table in the report, with "_synthetic" for synthetic data."""
     return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if data.synthetic else "")

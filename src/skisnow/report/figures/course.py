@@ -59,6 +59,7 @@ def course_line(
 
 
 def _draw_line(axes: Axes, place: FloatArray, values: FloatArray, *, diverging: bool) -> LineCollection:
+    """Draw the track, coloured by values, and return it; `diverging`: colours symmetric about 0."""
     pieces = np.stack([place[:-1, :2], place[1:, :2]], axis=1)
     middle = 0.5 * (values[:-1] + values[1:])
     colours = "PuOr_r" if diverging else "viridis"
@@ -72,6 +73,7 @@ def _draw_line(axes: Axes, place: FloatArray, values: FloatArray, *, diverging: 
 
 
 def _draw_gates(axes: Axes, result: CourseResult) -> None:
+    """Draw the gates with their poles, names of a few, and a cross at each gate that was not passed."""
     for number, (passage, line) in enumerate(zip(result.passages, result.course.lines, strict=True)):
         reach = line.width if np.isfinite(line.width) else SINGLE_POLE
         end = line.pole + reach * line.across
@@ -93,6 +95,7 @@ def _draw_gates(axes: Axes, result: CourseResult) -> None:
 
 
 def _set_axes(axes: Axes, points: FloatArray, words: str) -> None:
+    """Set limits and labels of a plan view; the scales differ if the course is long and narrow."""
     low, high = points.min(axis=0), points.max(axis=0)
     size = np.maximum(high - low, 1.0)
     margin = np.maximum(_MARGIN * size, 1.0)
@@ -106,6 +109,7 @@ def _set_axes(axes: Axes, points: FloatArray, words: str) -> None:
 
 
 def _legend_handles(result: CourseResult) -> list[Line2D]:
+    """Legend entries of poles, and of gates that were not passed if there are any."""
     style: dict[str, Any] = {"linestyle": "none", "marker": "o"}
     poles = ((VERMILLION, Message("turning pole of gate 1, 3, 5 …")), (BLUE, Message("of gate 2, 4, 6 …")))
     handles = [Line2D([], [], color=colour, markersize=4.2, label=label, **style) for colour, label in poles]

@@ -103,11 +103,13 @@ def drawing_svg(drawing: Drawing) -> str:
 
 
 def _render_svg(drawing: Drawing) -> str:
+    """SVG text of a drawing, with a fallback font of the same width."""
     # Verdana has the widths of DejaVu Sans where that is not installed
     return _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", _render_as("svg", drawing).decode("utf-8"))
 
 
 def _render_as(form: Form, drawing: Drawing) -> bytes:
+    """Bytes of a drawing in a file format; the layout is computed once for all formats."""
     content = io.BytesIO()
     engine = drawing.figure.get_layout_engine()
     if engine is not None:

@@ -32,6 +32,7 @@ def race_lines(result: QuickestLine) -> Figure:
 
 
 def _draw_lines(axes: Axes, result: QuickestLine) -> None:
+    """Draw the quickest line, the start line, their apexes and the turning poles."""
     for line, colour, label in (
         (result.start, GREY, Message("where the search began")),
         (result.line, BLUE, Message("quickest line")),
@@ -49,6 +50,7 @@ def _draw_lines(axes: Axes, result: QuickestLine) -> None:
 
 
 def _draw_history(axes: Axes, result: QuickestLine) -> None:
+    """Draw the time (s) of each evaluation over the whole course, the best so far, and failed ones at the top."""
     whole = [entry for entry in result.history if len(entry.row["turns"]) == len(result.line.turns)]
     number, value = np.array([(entry.number, entry.value) for entry in whole]).T
     through = value < 1000.0

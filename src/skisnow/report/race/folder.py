@@ -127,10 +127,12 @@ def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
 
 
 def _result_sentence(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Message:
+    """Message about the last gate that both crossed, or that there is none."""
     return last_words(gaps, names) if _crossed_by_both(gaps) else Message("No gate was crossed by both.")
 
 
 def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:
+    """Gaps at gates that both tracks crossed."""
     return [gap for gap in gaps if gap.gap_s is not None]
 
 
@@ -224,8 +226,10 @@ def worth_csv(variants: Sequence[Worth]) -> str:
 
 
 def _time_text(score: Score) -> str:
+    """Time of a score (s), or its words if it has none."""
     return score.words if score.time is None else f"{score.time:.3f} s"
 
 
 def _signed_text(value: float | None) -> str:
+    """Number with sign and three decimals; "-" for None."""
     return "-" if value is None else f"{value:+.3f}"

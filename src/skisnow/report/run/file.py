@@ -64,6 +64,7 @@ def write_run_file(
 
 
 def _write_attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapping[str, Any]) -> None:
+    """Write texts and numbers of a run as attributes of the netCDF file; missing numbers are left out."""
     texts = {
         "Conventions": CONVENTIONS,
         "title": "Simulated run of a sledge on two flexible skis on snow",
@@ -95,6 +96,7 @@ def _write_attributes(file: Any, run: Run, values: Mapping[str, Any], provenance
 
 
 def _write_variable(file: Any, variable: RunVariable, run: Run) -> None:
+    """Write a variable of a run with its attributes; values that are not finite are marked as missing."""
     written = file.createVariable(variable.name, "d", variable.dimensions)
     values = np.asarray(variable.values(run), dtype=float)
     written[:] = np.where(np.isfinite(values), values, MISSING)

@@ -69,6 +69,7 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], 
 
 
 def _make_header(run: Run, *, has_replay: bool) -> Header:
+    """Header of a run's page: title, snow, skis, version and, with `has_replay`, the link to the replay."""
     scenario, contact = run.scenario, run.scenario.contact
     over, snow = contact.snow_map, contact.snow
     hardness = _value(snow.snow_hardness, None if over is None else over.hardness, N_PER_MM3, "N/mm³")
@@ -96,6 +97,7 @@ def _make_header(run: Run, *, has_replay: bool) -> Header:
 
 
 def _edge_in_words(run: Run) -> str:
+    """Text of the edge angles (°), constant or as a range; "edged by the skier" with a skier."""
     if run.scenario.skier is not None:
         return Message("edged by the skier")
     if run.boots_by is not None:

@@ -85,6 +85,7 @@ def skis_table(run: Run) -> Table:
 
 
 def _quantiles(values: FloatArray) -> list[float | None]:
+    """Median and 95 % quantile of the finite values; two None without any."""
     finite = values[np.isfinite(values)]
     return np.quantile(finite, [0.5, 0.95]).tolist() if finite.size else [None, None]
 

@@ -57,6 +57,7 @@ def run_motion(run: Run) -> Figure:
 
 
 def _draw_radius(axes: Axes, run: Run) -> None:
+    """Draw the turn radius over time, and sidecut radius × cos ϑ as a line if the edge angle is fixed."""
     values = drawn_radius(run.turn_radius)
     axes.plot(run.time, values, color=BLUE)
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
@@ -120,6 +121,7 @@ def stacked_energies(run: Run) -> dict[str, FloatArray]:
 
 
 def _draw_stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
+    """Draw the energies (J) with these names over time, on top of each other."""
     axes.stackplot(
         run.time, [shares[name] for name in names], colors=[ENERGY_STYLES[name][0] for name in names], linewidth=0.0
     )
@@ -128,6 +130,7 @@ def _draw_stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tupl
 
 
 def _residual_in_words(run: Run) -> str:
+    """Text with the residual of the energy balance in percent of the energy exchanged."""
     error = run.energy_balance_error
     if error is None or not np.isfinite(error):
         return Message("no energy was exchanged") if error is None else Message("not finite at the end")
@@ -239,6 +242,7 @@ def slip_of_a_place(run: Run) -> float:
 
 
 def _over_capacity(run: Run, force: FloatArray) -> FloatArray:
+    """Side force divided by the shear capacity of the whole ski; NaN without capacity."""
     limit = np.trapezoid(_shear_capacity(run), -run.skis.station, axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(limit > 0.0, force / limit, np.nan)

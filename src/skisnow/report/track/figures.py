@@ -93,6 +93,7 @@ def drawn_points(first: int, last: int) -> IntArray:
 
 
 def _usable_points(summary: TrackSummary, first: int, last: int) -> IntArray:
+    """Indices of usable points among those drawn from first to last."""
     numbers = drawn_points(first, last)
     return numbers[summary.track.usable[numbers]]
 
@@ -107,6 +108,7 @@ def _draw_line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_
 
 
 def _draw_turns(axes: Axes, summary: TrackSummary) -> None:
+    """Draw each turn in the colour of its side, and the switch points between turns."""
     usable = summary.track.usable
     time, place = summary.motion.time[usable], summary.track.place[usable]
     for turn in summary.turns:
@@ -126,6 +128,7 @@ def switch_times(summary: TrackSummary) -> FloatArray:
 
 
 def _draw_ends(axes: Axes, summary: TrackSummary) -> None:
+    """Mark the first and the last usable point as start and end."""
     chosen = np.flatnonzero(summary.track.usable)
     for number, word in ((chosen[0], Message("start")), (chosen[-1], Message("end"))):
         x, y = summary.track.place[number, :2]
@@ -134,6 +137,7 @@ def _draw_ends(axes: Axes, summary: TrackSummary) -> None:
 
 
 def _handles(summary: TrackSummary) -> list[Line2D]:
+    """Legend entries of what is drawn: turns and switch points or runs, lifts, and the rest of the track."""
     handles = []
     if turns_are_distinct(summary):
         turns = ((BLUE, Message("turn to the left")), (VERMILLION, Message("turn to the right")))
@@ -196,6 +200,7 @@ def _with_gaps(summary: TrackSummary, numbers: IntArray, values: FloatArray) -> 
 
 
 def _draw_speed(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length: FloatArray) -> None:
+    """Draw the speed (m/s) over the arc length (m), with its 95 % interval if it is known."""
     speed = _with_gaps(summary, numbers, summary.motion.speed)
     path = summary.motion.path
     if path is not None:
@@ -213,6 +218,7 @@ def _draw_speed(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length
 
 
 def _draw_height(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length: FloatArray) -> None:
+    """Draw the third coordinate (m) over the arc length (m), labelled by the axes of the track."""
     axes.plot(arc_length[numbers], _with_gaps(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
     words = {
         "east_north_up": Message("height above\nthe origin (m)"),

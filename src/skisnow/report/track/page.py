@@ -51,6 +51,7 @@ def turns_table(summary: TrackSummary) -> Table:
 
 
 def _record_json(row: dict[str, Any]) -> dict[str, Any]:
+    """Row of a turn with None for non-finite numbers, intervals as pairs, and the side in words."""
     finite = {key: None if isinstance(value, float) and not np.isfinite(value) else value for key, value in row.items()}
     for name, low, high in (
         ("radius", "radius_low_m", "radius_high_m"),
@@ -112,6 +113,7 @@ def comparison_page(
 
 
 def _distances_table(comparison: Mapping[str, Any]) -> Table:
+    """Table of maximum, mean and root mean square distance (m) by each definition."""
     keys = (("max_m", Message("Maximum")), ("mean_m", Message("Mean")), ("rms_m", Message("Root mean square")))
     columns = (
         Column("definition", Message("Distance at"), "text"),

@@ -163,6 +163,7 @@ def comparison_drawing(comparison: Comparison) -> Drawing:
 
 
 def _draw_plan(axes: Axes, comparison: Comparison) -> None:
+    """Draw both tracks from above, the one before a fit, and a line at each maximum distance."""
     if comparison.fitted is not None:
         before = comparison.fitted.before.simulated.place
         axes.plot(*_thinned(before[:, 0], before[:, 1]), **BEFORE)
@@ -180,6 +181,7 @@ def _draw_plan(axes: Axes, comparison: Comparison) -> None:
 def _computed_distances(
     comparison: Comparison,
 ) -> Iterator[tuple[OffsetSeries, DistanceStatistics, dict[str, Any]]]:
+    """Offsets, statistics and line style of each definition of distance that could be computed."""
     for kind, line_style in LINE_STYLES.items():
         distances: Distances = getattr(comparison, kind)
         if distances.numbers is not None and distances.apart is not None:
@@ -187,6 +189,7 @@ def _computed_distances(
 
 
 def _draw_distances(axes: Axes, comparison: Comparison) -> None:
+    """Draw the distances along the measured track (m), on a logarithmic scale if their maxima differ much."""
     largest = []
     for apart, numbers, line_style in _computed_distances(comparison):
         axes.plot(*_thinned(apart.arc_length, apart.distance), **line_style)
@@ -218,6 +221,7 @@ FITTED: Final = {"start": Message("start"), "heading": Message("heading"), "time
 
 
 def _legend_handles(comparison: Comparison) -> list[Line2D]:
+    """Legend entries of both tracks, of the fit, and of each definition with its maximum."""
     simulated, measured = (figure_text(name, longest=40) for name in comparison.names)
     label: str = Message("simulated: {simulated}", simulated=simulated)
     if comparison.fitted is not None:

@@ -55,6 +55,7 @@ def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] |
 
 
 def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Names and texts of a track's rows for the terminal."""
     smoothing = values["smoothing"]
     yield "points", f"{values['points']} in {plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
     if values["start"]:
@@ -78,6 +79,7 @@ def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
+    """Text of a 95 % interval; "" for None."""
     return "" if ends is None else f" (95 %: {plain(ends[0], digits)} to {plain(ends[1], digits)} {unit})"
 
 
@@ -120,6 +122,7 @@ def _table_lines(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, 
 
 
 def _cell_text(value: Any, digits: int) -> str:
+    """Text of a value: unchanged text, a pair as a range, or a number; negative `digits`: decimals."""
     if isinstance(value, str):
         return value
     if isinstance(value, list):
@@ -234,6 +237,7 @@ def _distance_lines(title: str, distances: Mapping[str, Any], length: float, exa
 
 
 def _fitted_lines(comparison: Mapping[str, Any]) -> Iterator[str]:
+    """Lines about a fit: movement, turn, and distances before and after; none without a fit."""
     fitted = comparison["fitted"]
     if fitted is None:
         return
@@ -279,6 +283,7 @@ def turn_rows(summary: TrackSummary) -> list[dict[str, Any]]:
 
 
 def _turn_row(summary: TrackSummary, number: int, turn: Turn) -> dict[str, Any]:
+    """Row of a turn by column: times, length, least radius, speeds, and lean angles (°) by v²/(g R)."""
     has_speed = np.isfinite(summary.motion.speed)
     moments = [turn.start, turn.end, turn.least_radius_time]
     speeds = np.interp(moments, summary.motion.time[has_speed], summary.motion.speed[has_speed])
@@ -309,10 +314,12 @@ def points_csv(summary: TrackSummary) -> str:
 
 
 def _csv_text(columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> str:
+    """CSV text of a header and rows."""
     return csv_text(chain([columns], (map(_point_cell, row) for row in rows)))
 
 
 def _point_cell(value: object) -> str:
+    """Cell of a float with nine digits, "" if it is not finite; other values as protected text."""
     if isinstance(value, float):
         return f"{value:.9g}" if np.isfinite(value) else ""
     return protect_from_formulas(str(value))

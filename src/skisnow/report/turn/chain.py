@@ -43,6 +43,7 @@ class EnsembleRun(Shown):
     slips: float | None = None
 
     def _repr_facts(self) -> Facts:
+        """Outcome and snow as title, for the representation."""
         return Facts(f"{outcome_words(self.outcome)} on {self.snow.in_words}")
 
 
@@ -113,6 +114,7 @@ class TurnChain(Shown):
         return write_turn_report(self, folder, language=language)
 
     def _repr_facts(self) -> Facts:
+        """Campaign and site as title, and rows with snow, runs and ensemble, for the representation."""
         runs = [(name, f"{run.outcome}, {amount(run.run_length, 'm')}") for name, run in self.runs.items()]
         rows = (("snow", self.snow.in_words), *runs, ("ensemble", f"{len(self.ensemble)} runs"))
         return Facts(f"from {self.campaign!r}, {self.site}", rows)
@@ -269,6 +271,7 @@ def turn_dict(chain: TurnChain) -> dict[str, Any]:
 
 
 def _run_dict(contact: str, run: Run, nominal: Run) -> dict[str, Any]:
+    """JSON of a run: key results, summary, and its distance (m) from the nominal run, None for that itself."""
     grip, slips = used_grip(run)
     return {
         "contact": contact,
@@ -281,6 +284,7 @@ def _run_dict(contact: str, run: Run, nominal: Run) -> dict[str, Any]:
 
 
 def _ensemble_dict(run: EnsembleRun) -> dict[str, Any]:
+    """JSON of a run of the ensemble: snow, drawn values, outcome and its end."""
     track = run.track
     ends = {"end_time_s": track.time, "end_x_m": track.x, "end_y_m": track.y}
     return {
@@ -293,6 +297,7 @@ def _ensemble_dict(run: EnsembleRun) -> dict[str, Any]:
 
 
 def _numbers_dict(snow: SnowProperties) -> dict[str, float | None]:
+    """H_V (N/mm³) and S_f (N/mm², None if unknown) of a snow for JSON."""
     stress = snow.failure_shear_stress
     return {
         "H_V_N_per_mm3": snow.snow_hardness / N_PER_MM3,

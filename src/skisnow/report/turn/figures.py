@@ -105,6 +105,7 @@ def band_of(values: FloatArray) -> FloatArray:
 
 
 def _draw_plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], band: FloatArray) -> None:
+    """Draw the tracks from above, with the band of the ensemble to the side of the nominal track."""
     slope = np.unwrap(np.arctan2(np.gradient(nominal.y), np.gradient(nominal.x)))
     to_left = np.stack([-np.sin(slope), np.cos(slope)], axis=1)
     outline = np.stack([nominal.x, nominal.y], axis=1) + band[:, :, None] * to_left  # shape (5, n, 2)
@@ -120,6 +121,7 @@ def _draw_plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], ba
 
 
 def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str) -> None:
+    """Draw values of each run (runs, n) over time, with their band and a line at 0."""
     band = band_of(values)
     axes.plot(time, values.T, color=GREY, linewidth=0.3, zorder=2)
     axes.fill_between(time, band[0], band[4], color=PALE, alpha=0.6, linewidth=0, zorder=1)
@@ -164,6 +166,7 @@ def mathtext(name: str) -> str:
 
 
 def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
+    """Draw the distance (m) of each run from the track of the first, along its own track."""
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
         axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **line_style(place))
@@ -176,10 +179,12 @@ def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
 def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
     """Draw the depth along the ski that is more heavily loaded in the first run, for all runs at one time."""
     reference = named[0][1]
-    ski = int(loaded_skis(reference)[_time_index(reference, moment)])
+    ski = int(loaded_skis(reference)[_nearest_time_index(reference, moment)])
     for place, (_, run) in enumerate(named):
-        axes.plot(run.skis.station, run.skis.edge_depth[_time_index(run, moment), ski] / MM, **line_style(place))
-    deepest = max(float(np.nanmax(run.skis.edge_depth[_time_index(run, moment), ski])) for _, run in named) / MM
+        axes.plot(
+            run.skis.station, run.skis.edge_depth[_nearest_time_index(run, moment), ski] / MM, **line_style(place)
+        )
+    deepest = max(float(np.nanmax(run.skis.edge_depth[_nearest_time_index(run, moment), ski])) for _, run in named) / MM
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
@@ -189,7 +194,8 @@ def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> Non
     axes.set_ylabel(sides[ski])
 
 
-def _time_index(run: Run, moment: float) -> int:
+def _nearest_time_index(run: Run, moment: float) -> int:
+    """Index of the time nearest to a moment (s); the first or last one if it is outside of the run."""
     return int(np.argmin(abs(run.time - moment)))
 
 

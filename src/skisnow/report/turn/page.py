@@ -106,6 +106,7 @@ def _make_drawings(chain: TurnChain) -> Iterator[Drawing]:
 
 
 def _make_header(chain: TurnChain) -> Header:
+    """Header of the page: campaign, site, skis, version, and the key results."""
     facts = [
         (Message("Campaign"), chain.campaign),
         (Message("Site"), chain.site),
@@ -126,6 +127,7 @@ def _make_header(chain: TurnChain) -> Header:
 
 
 def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
+    """Sections of the page with their words, pictures and tables."""
     by_name = {picture.name: picture for picture in pictures}
     contacts = prose(
         "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
@@ -180,6 +182,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
 
 
 def _provenance(chain: TurnChain) -> Markup:
+    """Sentences with the snow's source, version, number of runs and time (s)."""
     return prose(
         "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s, without the ensemble. Unrounded "
         "numbers: {file}.",
@@ -245,6 +248,7 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
 
 
 def _contact_row(name: str, run: Run) -> tuple[Any, ...]:
+    """Cells of a contact: outcome, length, last speed, turned angle (°), radius, depth (mm), ratio and grip."""
     heading = np.unwrap(run.heading)
     return (
         name,

@@ -121,6 +121,7 @@ def _largest_share(chain: TurnChain) -> Iterator[Markup]:
 
 
 def _in_words(key: str) -> Markup:
+    """Words for an input, or its key if it has none."""
     return html(_INPUTS[key][0] if key in _INPUTS else key)
 
 
@@ -131,6 +132,7 @@ def _shares(chain: TurnChain) -> BandShares | None:
 
 
 def _snow_sentence(chain: TurnChain) -> Markup:
+    """Sentence with the snow's quantities and intervals at the site; k_u/H_V and u_y only with intervals."""
     snow, ratio, displacement = chain.snow, Markup(""), Markup("")
     if snow.unloading_ratio is not None and snow.unloading_ratio_interval is not None:
         value, ends = significant(snow.unloading_ratio), interval(snow.unloading_ratio_interval)
@@ -151,10 +153,12 @@ def _snow_sentence(chain: TurnChain) -> Markup:
 
 
 def _interval_in(unit: float, ends: tuple[float, float] | None) -> str:
+    """Text of an interval in a unit, given by its size in SI."""
     return interval(ends and [end / unit for end in ends])
 
 
 def _contact_sentence(name: str, run: Run) -> Markup:
+    """Sentence with a contact's outcome, edge-depth ratio, grip utilisation and side slip."""
     grip, slides = used_grip(run)
     return prose(
         "{name}: {outcome} after {length} m and {time} s. The afterbody/forebody edge-depth ratio is {ratio}; the more "
@@ -176,6 +180,7 @@ def contrast(chain: TurnChain) -> list[Markup]:
 
 
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
+    """Sentences that compare a contact's radius, grip, edge depths and track with those of the first."""
     names = {"name": name, "first": first}
     radii = median_radius(run), median_radius(reference)
     (grip, slips), (other_grip, other_slips) = used_grip(run), used_grip(reference)
