@@ -176,6 +176,7 @@ class Analysis(Shown):
         return analysis_dataset(self)
 
     def _repr_facts(self) -> Facts:
+        """Title with the campaign's name; rows with experiments, mean H_V and S_f, model, sites and relations."""
         selected = self.penetration.selected if self.penetration is not None else None
         rows = [
             ("penetration", "none" if self.penetration is None else used_words(self.penetration.screened)),
@@ -304,6 +305,7 @@ def _analyse_penetration(
     n_resamples: int,
     progress: Callable[[str], None],
 ) -> PenetrationAnalysis | None:
+    """Results of the penetration experiments; None without any, or if no hardness can be estimated."""
     if campaign.penetration is None:
         return None
     readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
@@ -363,6 +365,7 @@ def _with_models(
 
 
 def _analyse_shear(campaign: Campaign) -> ShearAnalysis | None:
+    """Results of the shear experiments; None if the campaign has none."""
     if campaign.shear is None:
         return None
     screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
@@ -376,6 +379,7 @@ def _observations_by_source(
     shear: ShearAnalysis | None,
     pen: SnowMicroPenAnalysis | None,
 ) -> dict[Source, Observations]:
+    """Values for regressions, from penetration experiments, shear experiments, and spots with both."""
     nothing = np.zeros(0), np.zeros(0, dtype=bool)
     hardness, used = (penetration.hardness["H_V"].value, penetration.screened.used) if penetration else nothing
     sheared = (shear.stress.value, shear.screened.used) if shear else nothing

@@ -83,8 +83,8 @@ class FittedSeries(NamedTuple):
     freedom: Freedom
 
 
-class _Line(NamedTuple):
-    """The model linearised at the present estimate: dê/dln V (m), residual (m) and weight of each reading."""
+class _LinearisedModel(NamedTuple):
+    """Model linearised at the present estimate: dê/dln V (m; V: volume), residual (m), weight (1/m²) by reading."""
 
     slope: FloatArray
     residual: FloatArray
@@ -183,24 +183,29 @@ class SeriesFit:
         return totals
 
     def _to_series(self, values: FloatArray) -> FloatArray:
+        """Values of the groups, shape (groups,), repeated for each series."""
         return values if self._n_groups == 1 else values[self._group]
 
     def _to_readings(self, values: FloatArray) -> FloatArray:
+        """Values of the groups, shape (groups,), repeated for each reading."""
         return values if self._n_groups == 1 else values[self._group][self._readings.series]
 
-    def _linearise(self) -> _Line:
+    def _linearise(self) -> _LinearisedModel:
+        """Model linearised at the present estimate: depth by ln V, residual and weight of each reading."""
         readings, series = self._readings, self._readings.series
         volume = np.exp((self._largest - self._h)[series] + self._g[series] * self._share)
         depth = readings.depth_at_volume(volume)
         slope = volume / readings.area_at_depth(depth)
-        return _Line(slope, readings.penetration_depth - depth - self._d[series], self._reading_weights(slope))
+        return _LinearisedModel(
+            slope, readings.penetration_depth - depth - self._d[series], self._reading_weights(slope)
+        )
 
     def _reading_weights(self, slope: FloatArray) -> FloatArray:
         """Inverse variances (1/m²) of the depths, 0 for readings without contact; slope: de/d ln V (m)."""
         load2 = self._g[self._readings.series] ** 2 * self._load2
         return self._seen / (self._depth2 + slope**2 * (load2 + self._to_readings(self._spreads.scatter2)))
 
-    def _scatter_step(self, line: _Line, free: FloatArray) -> float:
+    def _scatter_step(self, line: _LinearisedModel, free: FloatArray) -> float:
         """One Newton step on 1/Q towards Q + ν₀ s₀²/s² = free readings + ν₀: Paule and Mandel with a prior."""
         sums, priors, scatter2 = self._readings.sums, self._priors, self._spreads.scatter2
         weighted = line.weight * line.residual
@@ -213,7 +218,8 @@ class SeriesFit:
         self._spreads = self._spreads._replace(scatter2=moved)
         return float(np.abs(moved / scatter2 - 1.0).max())
 
-    def _eliminate_hardness(self, line: _Line) -> _Reduced:
+    def _eliminate_hardness(self, line: _LinearisedModel) -> _Reduced:
+        """Normal equations of each series by ln H, g and δ, and those of g and δ after ln H is eliminated."""
         sums, share = self._readings.sums, self._share
         by_slope = line.weight * line.slope
         by_slope2 = by_slope * line.slope
@@ -249,6 +255,7 @@ class SeriesFit:
         return posterior, moved
 
     def _spreads_of(self, posterior: _Posterior) -> Spreads:
+        """Variances of depth zero and of the exponent g, and its mean, of each group, by priors and posterior."""
         priors, spreads, m = self._priors, self._spreads, self._n_series
         seating2 = priors.seating_series * priors.seating**2 + self._total(posterior.d**2 + posterior.Cdd)
         precision = priors.mean_layering**-2
@@ -263,14 +270,20 @@ class SeriesFit:
         )
 
     def _fitted_series(
-        self, line: _Line, reduced: _Reduced, posterior: _Posterior, free: FloatArray, step: FloatArray
+        self,
+        line: _LinearisedModel,
+        reduced: _Reduced,
+        posterior: _Posterior,
+        degrees_of_freedom: FloatArray,
+        last_step: FloatArray,
     ) -> FittedSeries:
+        """Values of ln H, g, δ and covariances by series; NaN where the `last_step` of ln H is too large."""
         a, b = reduced.hg / reduced.hh, reduced.hd / reduced.hh
         Chg = -(a * posterior.Cgg + b * posterior.Cgd)
         Chd = -(a * posterior.Cgd + b * posterior.Cdd)
         Chh = 1.0 / reduced.hh - a * Chg - b * Chd
         C = np.stack((Chh, Chg, Chd, Chg, posterior.Cgg, posterior.Cgd, Chd, posterior.Cgd, posterior.Cdd), axis=-1)
-        lost = ~(np.abs(step) < _LOST) | ~np.isfinite(C).all(axis=-1)
+        lost = ~(np.abs(last_step) < _LOST) | ~np.isfinite(C).all(axis=-1)
         C = C.reshape(-1, 3, 3)
         sums = self._readings.sums
         J = (-line.slope, line.slope * self._share, np.ones_like(line.slope))
@@ -284,9 +297,11 @@ class SeriesFit:
         for values in of_series:
             values[lost] = np.nan
         misfit = self._readings.sums(line.weight * line.residual**2)
-        return FittedSeries(of_series, misfit, free, self._spreads, self._freedom(line, posterior, free))
+        return FittedSeries(
+            of_series, misfit, degrees_of_freedom, self._spreads, self._freedom(line, posterior, degrees_of_freedom)
+        )
 
-    def _freedom(self, line: _Line, posterior: _Posterior, free: FloatArray) -> Freedom:
+    def _freedom(self, line: _LinearisedModel, posterior: _Posterior, free: FloatArray) -> Freedom:
         """Degrees of freedom of each spread: twice the Fisher information of its logarithm (prior and data)."""
         priors, sums = self._priors, self._readings.sums
         of_d = 1.0 - posterior.Cdd / self._to_series(self._spreads.seating2)

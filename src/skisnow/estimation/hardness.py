@@ -153,6 +153,7 @@ def scatter_variance(readings: Readings, logs: FloatArray, instrument2: FloatArr
 
 
 def _reciprocal_or_zero(variance: FloatArray) -> FloatArray:
+    """1/variance; 0 where the variance is not positive."""
     return np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
 
 

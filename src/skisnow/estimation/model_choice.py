@@ -52,6 +52,7 @@ def compare_nested_rows(fits: tuple[ModelFit, ...]) -> tuple[NestedRows, ...]:
 
 
 def _compare_nested_pair(full: ModelFit, reduced: ModelFit) -> NestedRows:
+    """F test of a model against a nested one, and the change of its rmse (%); flagged if a fit is at a bound."""
     test = nested_f_test(
         full.sse, reduced.sse, n=full.n, n_parameters_full=full.n_parameters, n_parameters_reduced=reduced.n_parameters
     )

@@ -221,10 +221,12 @@ def fit_model(readings: Readings, basis: EndBasis, model: Model, of_load: Conden
 
 
 def _root_mean(sse: float, count: int) -> float:
+    """√(sse/count); NaN if the count is not positive."""
     return float(np.sqrt(sse / count)) if count > 0 else float("nan")
 
 
 def _coefficients_at_bound(model: Model, basis: EndBasis, bound: BoolArray) -> tuple[str, ...]:
+    """Names of the coefficients of a fit at their bound; for a linear term with the edge angle of that end."""
     names: list[str] = []
     for term, name, start in ((model.a, "a", 0), (model.b, "b", 2)):
         if term == "constant" or (term == "linear" and basis.flat):

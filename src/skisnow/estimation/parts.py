@@ -47,6 +47,7 @@ class ModelTable(Shown):
     intervals: dict[Model, FloatArray]
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of models, and a row with the rmse of each (N)."""
         rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
         return Facts(f"of {len(rows)} rows", rows)
 
@@ -184,7 +185,7 @@ def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[Fl
 
 
 def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
-    """The campaign's own name of a site, see `skisnow.snow.mean_snow.site_named`."""
+    """The campaign's own name of a site ("site C" for "C"); None or an unknown name is returned unchanged."""
     tables = (tests for tests in (campaign.penetration, campaign.shear) if tests is not None)
     return site_named(site, (name for tests in tables for name in tests.site))
 
@@ -226,6 +227,7 @@ def _similar_name_notes(campaign: Campaign) -> Iterator[str]:
 
 
 def _untested_site_notes(campaign: Campaign) -> Iterator[str]:
+    """Remarks on snow data from sites without any test; none if the campaign has no tests at all."""
     tested = _test_sites(campaign)
     if not tested:  # recordings or samples alone
         return

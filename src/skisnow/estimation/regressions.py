@@ -84,6 +84,7 @@ def spot_observations(penetration: Observations, shear: Observations) -> Observa
 def _observations_of_tests(
     campaign: Campaign, tests: PenetrationTests | ShearTests, results: dict[str, FloatArray], used: BoolArray
 ) -> Observations:
+    """Results, edge angle, density and drop-cone depth of the used tests; the site's mean replaces missing values."""
     density = campaign.density.site_means() if campaign.density else {}
     cone = campaign.drop_cone.site_means() if campaign.drop_cone else {}
     columns = results | {
@@ -106,6 +107,7 @@ def _own_or_site(own: FloatArray, site: tuple[str, ...], means: Mapping[str, flo
 
 
 def _values_by_spot(data: Observations, values: FloatArray) -> dict[tuple[str, str], float]:
+    """Mean value of each spot, by site and spot; tests without a spot are left out."""
     collected: dict[tuple[str, str], list[float]] = {}
     for site, spot, value in zip(data.site, data.spot, values.tolist(), strict=True):
         if spot:
@@ -208,6 +210,7 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
 
 
 def _fit_line(response: FloatArray, predictor: FloatArray) -> LinearFit | None:
+    """Regression line of a response; None for fewer than two values or a predictor that does not vary."""
     if len(response) < 2:
         return None
     try:

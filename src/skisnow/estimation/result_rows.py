@@ -261,6 +261,7 @@ def selected_model(penetration: PenetrationAnalysis) -> Json | None:
 
 
 def _reason_for_choice(chosen: ModelFit, best: ModelFit) -> Message:
+    """Sentence with the reason for the chosen model: its rmse (N), parameters, and those of the best model."""
     if chosen.model == best.model:
         return Message(
             "The smallest rmse of the nine candidate models, {rmse:.4g} N; no model with fewer fitted parameters "

@@ -106,6 +106,7 @@ def _published_relations(analysis: Analysis) -> Iterator[Json]:
 
 
 def _finite_mean(values: Sequence[float]) -> float:
+    """Mean of the finite values; NaN if there are none."""
     finite = [value for value in values if isfinite(value)]
     return fsum(finite) / len(finite) if finite else nan
 
@@ -128,6 +129,7 @@ def _by_relations(density: float, resistance: float) -> Json:
 
 
 def _campaign_json(analysis: Analysis) -> Json:
+    """JSON of the campaign: names, uncertainties, excluded flags, warnings, corrections and remarks."""
     campaign = analysis.campaign
     return {
         "name": campaign.name,
@@ -148,6 +150,7 @@ def _campaign_json(analysis: Analysis) -> Json:
 
 
 def _penetration_json(analysis: Analysis) -> Json:
+    """JSON of the penetration experiments, their models and site means; empty lists without experiments."""
     estimates, tests = analysis.penetration, analysis.campaign.penetration
     if estimates is None or tests is None:
         return {
@@ -207,6 +210,7 @@ def _penetration_json(analysis: Analysis) -> Json:
 
 
 def _volume_factor(factor: VolumeFactor | None) -> Json | None:
+    """JSON of the factor b of the volume, raw and corrected, with its interval; None without an estimate."""
     if factor is None:
         return None
     return {
@@ -219,6 +223,7 @@ def _volume_factor(factor: VolumeFactor | None) -> Json | None:
 
 
 def _site_unloading(row: SiteUnloading) -> Json:
+    """JSON of a site's unloading: ratio, rebound, and stiffness k_u (N/mm³), each with its interval."""
     return {
         "site": row.site,
         "n": row.n,
@@ -231,6 +236,7 @@ def _site_unloading(row: SiteUnloading) -> Json:
 
 
 def _shear_json(analysis: Analysis) -> Json:
+    """JSON of the shear experiments and of each site's shear displacement (mm)."""
     shear, tests = analysis.shear, analysis.campaign.shear
     if shear is None or tests is None:
         return {"experiments": [], "displacement": []}
@@ -249,6 +255,7 @@ def _shear_json(analysis: Analysis) -> Json:
 
 
 def _regression_json(regression: Regression) -> Json:
+    """JSON of a regression; all numbers are None if it was not fitted, F and p also if they are withheld."""
     fit = regression.fit
     numbers: Json = dict.fromkeys(("b", "interval", "rmse", "rmse_dof", "r2", "F", "p"))
     if fit is not None:
@@ -275,6 +282,7 @@ def _regression_json(regression: Regression) -> Json:
 
 
 def _site_mean(row: SiteMean) -> Json:
+    """JSON of a site's mean with interval, range and letters; a shared letter: not shown to differ."""
     own = row.own
     return {
         "quantity": row.quantity,
@@ -288,6 +296,7 @@ def _site_mean(row: SiteMean) -> Json:
 
 
 def _provenance_json(analysis: Analysis) -> Json:
+    """JSON of the analysis's inputs: hashes of files, versions, seed, options and time."""
     packages = ("skisnow", "numpy", "scipy")
     return {
         "files": dict(sorted(analysis.campaign.file_hashes.items())),
@@ -314,6 +323,7 @@ def results_pieces(results: dict[str, Any]) -> Iterator[bytes]:
 
 
 def _json_pieces(value: Any, depth: int) -> Iterator[bytes]:
+    """Pieces of the JSON text of a value, with line breaks down to the third level and between rows."""
     pad = b"\n" + b" " * (depth + 1)
     if isinstance(value, dict) and value and depth < 3:
         for index, (key, item) in enumerate(value.items()):

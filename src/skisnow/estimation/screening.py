@@ -126,6 +126,7 @@ def quality_flags(
 
 
 def _mask_of_used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
+    """True for each experiment without any flag that the campaign excludes."""
     excluded = np.zeros(count, dtype=bool)
     for code, mask in flags.items():
         if code in campaign.excluding:

@@ -124,6 +124,7 @@ class SnowMicroPenAnalysis(Shown):
 def _means_by_site_and_spot(
     places: Iterable[tuple[str, str]], values: FloatArray, usable: BoolArray
 ) -> dict[tuple[str, str], float]:
+    """Mean of the usable values, by site and spot; pairs without a usable value are left out."""
     collected: dict[tuple[str, str], list[float]] = {}
     for place, value, use in zip(places, values.tolist(), usable.tolist(), strict=True):
         if use:
@@ -213,6 +214,7 @@ def depth_profile(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, 
 
 
 def _cone_area(profile: SnowMicroPenProfile) -> float:
+    """Base area (m²) of the penetrometer's tip."""
     return 0.25 * math.pi * profile.tip_diameter**2
 
 
@@ -229,6 +231,7 @@ class _Windows(NamedTuple):
 
 
 def _values_of_windows(force: FloatArray, sample_distance: float, area: float, name: str) -> _Windows:
+    """Shot-noise and snow values in each window of a force (N); NaN where the noise or the median is unusable."""
     relation = PENETROMETER_RELATIONS[name]
     size = max(round(relation.window / sample_distance), 3)
     step = max(round(size * (1.0 - OVERLAP)), 1)
@@ -245,6 +248,7 @@ def _values_of_windows(force: FloatArray, sample_distance: float, area: float, n
 
 
 def _window_means(force: FloatArray, sample_distance: float, area: float, name: str) -> WindowMeans:
+    """Medians and means over the usable windows of a force (N); NaN and n = 0 if no window is usable."""
     values = _values_of_windows(force, sample_distance, area, name)
     usable = np.isfinite(values.element_size)
     if not usable.any():
@@ -274,6 +278,7 @@ def snow_micro_pen_results(analysis: SnowMicroPenAnalysis) -> Json:
 
 
 def _recording_json(recording: EvaluatedRecording, chosen: WindowMeans) -> Json:
+    """JSON of a recording: flags, forces (N), and values by the chosen and by each other relation."""
     return {
         "used": recording.is_used,
         "flags": list(recording.flags),
@@ -292,6 +297,7 @@ def _recording_json(recording: EvaluatedRecording, chosen: WindowMeans) -> Json:
 
 
 def _density_and_surface_area(windows: WindowMeans) -> Json:
+    """JSON of density (kg/m³), specific surface area (m²/kg), and the number of windows."""
     return {
         "snow_density_kg_per_m3": windows.snow_density,
         "specific_surface_area_m2_per_kg": windows.specific_surface_area,

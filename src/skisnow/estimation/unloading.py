@@ -205,6 +205,7 @@ def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[Flo
 
 
 def _linearise_unloading(branch: Readings, offset: FloatArray, model: CampaignModel) -> _Branch:
+    """Unloading as e = e_0 - s g: g (m), dg/dδ, known variance and (s g)² (m²) of each reading."""
     top, series, uncertainty = branch.largest[branch.series], branch.series, model.uncertainty
     deepest = (branch.penetration_depth - offset[series])[top]
     share = branch.load / branch.load[top]

@@ -32,7 +32,8 @@ class AirDrag(CheckedParameters):
     drag_area: Annotated[float, NOT_BELOW_ZERO]
     air_density: Annotated[float, ABOVE_ZERO]
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Warn of a drag area outside the measured range, unless it is 0."""
         if self.drag_area > 0:
             DRAG_AREA.warn_outside(self.drag_area, "AirDrag", stacklevel=4)
 

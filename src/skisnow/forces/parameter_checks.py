@@ -62,12 +62,12 @@ class CheckedParameters:
             value = min(value, default=0.0) if isinstance(value, tuple) else value
             if isinstance(mark, ParameterCheck) and not (math.isfinite(value) and mark.holds(value)):
                 raise ParameterError(mark.problem).tag(mark.code, kind=kind, name=name, value=value)
-        self._check_together()
+        self._check_further()
         for name, mark in marks:
             if isinstance(mark, MeasuredRange):
                 mark.warn_outside(getattr(self, name), kind, stacklevel=3)
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
         """Further checks of a law; a warning needs ``stacklevel=4`` to name the line that made the law."""
 
 

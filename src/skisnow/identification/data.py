@@ -70,6 +70,7 @@ def _reject_misspelt(path: Path, head: set[str]) -> None:
 
 
 def _is_track(head: set[str]) -> bool:
+    """True if a header has a time and the columns of a place, local or geodetic."""
     return bool(head & set(TIMES)) and any(set(place[:2]) <= head for place in (LOCAL, GEODETIC))
 
 
@@ -308,6 +309,7 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
 
 
 def _read_site(site: Mapping[str, Any]) -> Site:
+    """Site of the table [identify.site]; latitude and longitude must be given together."""
     parsed = build_declared(Site, checked_table(Site, site, "[identify.site]"))
     if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
         raise ParameterError("[identify.site]: latitude_deg and longitude_deg go together; one is missing").tag(

@@ -32,6 +32,7 @@ CELL_SPREAD: Final = "time_sd_s"
 
 
 def _read_rows(path: Path, columns: tuple[str, ...], further: tuple[str, ...]) -> list[CsvRow]:
+    """Rows of a table with required and `further` optional columns; rejects a table without rows."""
     rows = list(csv_rows(path, columns, further=further, action=_ACTION))
     if not rows:
         raise ParameterError("{name} has no rows below its header").tag("no_rows", name=path)

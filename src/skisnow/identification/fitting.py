@@ -184,6 +184,7 @@ def identify(
 def _make_observations(
     scenario: ScenarioFile, read: IdentificationData, simulations: Simulations, *, clock_is_free: bool
 ) -> tuple[Observations, ...]:
+    """Tracks (all together, first) and photo-cell runs to compare with simulations."""
     observations: list[Observations] = [
         PhotoCellTimes(cell, scenario, read.starts, clock_is_free) for cell in read.cells
     ]
@@ -200,6 +201,7 @@ _KINDS: Final[dict[Kind, Message]] = {
 
 
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
+    """Reject a free parameter on which none of the data depend."""
     for key in (key.partition("@")[0] for key in keys):
         if not any(observation.used_keys is None or key in observation.used_keys for observation in observations):
             kinds = [_KINDS[kind] for kind in dict.fromkeys(observation.kind for observation in observations)]

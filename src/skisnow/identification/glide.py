@@ -189,6 +189,8 @@ def _step_on(
 
 
 def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray) -> FloatArray:
+    """State after one step h (s) of the classical Runge-Kutta method; the speed stays at 0 or above."""
+
     def rates(at: FloatArray) -> FloatArray:
         return glide.rates(line, piece, at[0], at[2])
 

@@ -142,6 +142,7 @@ def parameter_table(
 
 
 def _make_parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping[str, float]]) -> Parameter:
+    """Parameter of a key from its tables, the scenario's value and default bounds; rejects one without a start."""
     own = key.partition("@")[0]
     entries = {**tables.get(own, {}), **tables.get(key, {})}
     start = entries.get("start", values.get(key, values.get(own)))

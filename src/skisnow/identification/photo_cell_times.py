@@ -102,6 +102,7 @@ class PhotoCellTimes:
         return (f"the scenario's heading of {heading:g}° plays no part: photo cells stand down the fall line",)
 
     def _cells_after_start(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Stations (m), times and standard deviations (s); a cell at 0 m only if the clock is free."""
         sd = run.time_sd if run.time_sd is not None else np.full(len(run.time), NOMINAL_SD)
         first = int(not self.clock_is_free and run.station[0] == 0.0)
         return run.station[first:], run.time[first:], sd[first:]
@@ -114,6 +115,7 @@ class PhotoCellTimes:
         return np.asarray(late - np.sum(weight * late) / np.sum(weight))
 
     def _passage_times(self, run: PhotoCellRun, station: FloatArray, many: Sequence[Values]) -> FloatArray:
+        """Simulated times (s) at the stations (m), one row for each set of values."""
         fixed = {**self.scenario.values, **self.starts.get(run.name, {})}
         sets = [{**fixed, **run_values(values, run.name)} for values in many]
         duration = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))

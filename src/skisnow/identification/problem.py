@@ -91,6 +91,7 @@ class Problem:
         return np.concatenate([*ratios, np.ones(self.priors)])
 
     def _weighted_residuals(self, parts: Sequence[FloatArray | None], values: Values) -> FloatArray | None:
+        """Residuals divided by their noise, then those of the priors; None if a part is missing or not finite."""
         pieces = []
         for part, noise in zip(parts, self.noise, strict=True):
             if part is None or not np.all(np.isfinite(part)):

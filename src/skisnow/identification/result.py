@@ -39,6 +39,7 @@ REASONS: dict[Outcome, str] = {
 
 
 def _ends_text(interval: Interval) -> str:
+    """Both ends of an interval as a text, "open" for None."""
     return " to ".join("open" if end is None else f"{end:.4g}" for end in interval)
 
 
@@ -65,6 +66,7 @@ class Identified(Shown):
     identifiable: bool = True
 
     def _repr_facts(self) -> Facts:
+        """Title with the parameter's key and its estimate."""
         return Facts(f"{self.parameter.key} = {self.in_words}")
 
     @property
@@ -95,6 +97,7 @@ class Profile(Shown):
     limit: float
 
     def _repr_facts(self) -> Facts:
+        """Title with the parameter's key, the number of values and their range."""
         return Facts(f"of {self.key} at {len(self.value)} values, {ends(self.value)}")
 
 
@@ -169,6 +172,7 @@ class Identification(Shown):
     data: tuple[tuple[str, str], ...] = ()
 
     def _repr_facts(self) -> Facts:
+        """Title with outcome, scenario and number of points, and a row for each parameter."""
         rows = tuple((identified.parameter.key, identified.in_words) for identified in self.parameters)
         return Facts(
             Message(
@@ -232,6 +236,7 @@ def identification_dict(identification: Identification, *, files: Iterable[Path]
 
 
 def _parameter_dict(identified: Identified) -> dict[str, Any]:
+    """JSON of an estimated parameter: value, intervals, bounds, prior, and if it is identifiable."""
     estimates = ("value", "interval", "standard_error", "profile_interval", "bootstrap_interval", "posterior_interval")
     given = ("unit", "start", "lower", "upper", "prior_mean", "prior_sd")
     entries = (

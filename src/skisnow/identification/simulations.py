@@ -128,6 +128,7 @@ class RunSimulation:
         return _row(run, self.times[task.run])
 
     def _scenario_of_task(self, task: RunTask) -> Scenario:
+        """Scenario of a run, as long as its track; with fast fixed steps unless it is the final run."""
         scenario = build_input(self.scenario_input.changed(task.values), sources=self._sources).scenario
         duration = max(float(self.times[task.run][-1]), 1e-3) + _AFTER_THE_LAST
         interval = min(scenario.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
@@ -194,6 +195,7 @@ def grip_limit_sentences(
 
 
 def _path_length(row: Row) -> float:
+    """Length (m) of a simulated path in the plane."""
     return float(np.sum(np.hypot(np.diff(row["x_m"]), np.diff(row["y_m"]))))
 
 

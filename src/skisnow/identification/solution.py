@@ -157,6 +157,7 @@ def too_few_points(problem: Problem, plan: SearchRequest) -> Identification:
 
 
 def _outcome_of(state: SearchState, spread: Uncertainty | None) -> Outcome:
+    """Outcome of a search: interrupted, not_identifiable (if a parameter is unknown), or the search's own state."""
     if state.state == "interrupted":
         return "interrupted"
     if spread is not None and spread.unknown.any():
@@ -165,6 +166,7 @@ def _outcome_of(state: SearchState, spread: Uncertainty | None) -> Outcome:
 
 
 def _identified_parameters(solution: Solution, spread: Uncertainty | None) -> Iterator[Identified]:
+    """Estimates with standard errors and 95 % intervals, which end at the bounds; None without a spread."""
     problem, place = solution.problem, solution.optimum.place
     lower, upper = bounds_of(problem.parameters)
     for j, parameter in enumerate(problem.parameters):
@@ -187,6 +189,7 @@ def _identified_parameters(solution: Solution, spread: Uncertainty | None) -> It
 
 
 def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator[str]:
+    """Warnings of few data, unknown or correlated parameters, bounds, an unfinished search and bad residuals."""
     parameters, points = solution.problem.parameters, solution.problem.points
     if points < max(10, 3 * len(parameters)):
         yield Message(
@@ -244,6 +247,7 @@ def _neighbour_correlation(solution: Solution) -> float | None:
 
 
 def _multistart_warnings(solution: Solution) -> Iterator[str]:
+    """Warnings of failed starts, and of searches that ended in a worse minimum."""
     costs = [cost for _, cost in solution.tried if cost is not None]
     missing = len(solution.tried) - len(costs)
     if missing:
@@ -261,6 +265,7 @@ def _multistart_warnings(solution: Solution) -> Iterator[str]:
 
 
 def _interval_methods(solution: Solution) -> Iterator[str]:
+    """Sentences about how the intervals were computed; none without derivatives."""
     if solution.optimum.jacobian is None:
         return
     law = (

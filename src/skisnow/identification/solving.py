@@ -76,6 +76,7 @@ class Solver:
 
     @property
     def _has_tracks(self) -> bool:
+        """True if any observation is a track."""
         return any(observation.kind == "track" for observation in self.problem.observations)
 
     def _make_search(self, problem: Problem, about: str, *, final: bool = False) -> Search:

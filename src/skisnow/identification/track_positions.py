@@ -194,6 +194,7 @@ class TrackPositions:
             return ["whether the run is near the limit of grip was not checked: interrupted"]
 
     def _run_tasks(self, values: Values, *, final: bool) -> list[RunTask]:
+        """One task for each track, with its values; `final`: at the accuracy of a final run."""
         return [
             RunTask({**self.fixed, **self.starts.get(track.name, {}), **run_values(values, track.name)}, i, final)
             for i, track in enumerate(self.tracks)
@@ -201,6 +202,7 @@ class TrackPositions:
 
 
 def _track_residuals(track: TrackPoints, row: Row) -> FloatArray | None:
+    """Differences in x, y and speed, divided by their standard deviations; None if no run could be simulated."""
     if "x_m" not in row:
         return None
     place = np.column_stack([row["x_m"], row["y_m"]])
@@ -211,6 +213,7 @@ def _track_residuals(track: TrackPoints, row: Row) -> FloatArray | None:
 
 
 def _result_warnings(track: TrackPoints, row: Row) -> list[str]:
+    """Warnings of a failed run, an open energy balance, an early end, and outliers."""
     if "x_m" not in row:
         return [f"{track.name}: no run can be simulated with these values: {row.get('reason', '')}"]
     warnings = []
@@ -261,6 +264,7 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
 
 
 def _distance_text(metres: float) -> Message:
+    """Distance (m) as a text in m, or in km from 10 km."""
     far = metres >= 10_000.0
     return (
         Message("{distance:.4g} km", distance=metres / 1000.0) if far else Message("{distance:.3g} m", distance=metres)

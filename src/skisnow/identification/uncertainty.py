@@ -204,9 +204,11 @@ def _why_open(parameters: Sequence[Parameter], spread: Uncertainty, j: int) -> s
 
 
 def _pair_help(one: Parameter, other: Parameter) -> str:
+    """Advice for two parameters that the data cannot separate."""
     keys = frozenset(parameter.key.partition("@")[0] for parameter in (one, other))
     return _HELPS.get(keys, _COMMON)
 
 
 def _single_help(one: Parameter) -> str:
+    """Advice for a parameter that the data cannot determine."""
     return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere")

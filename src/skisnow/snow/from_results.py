@@ -103,6 +103,7 @@ def _of_site(
 
 
 def _read_results(path: Path) -> dict[str, Any]:
+    """Contents of a results.json of `skisnow analyse`; rejects any other file."""
     try:
         results = read_json(path)
     except ContentError as error:

@@ -108,9 +108,11 @@ class SnowProperties(Shown):
         return replace(self, **changes) if changes else self  # type: ignore[arg-type]
 
     def _repr_facts(self) -> Facts:
+        """Title with all values in words."""
         return Facts(self.in_words)
 
     def _notebook_facts(self) -> Facts:
+        """Title with the source, and a row for each value."""
         return Facts(self.source, self._rows())
 
     def _rows(self) -> tuple[tuple[str, str], ...]:
@@ -124,6 +126,7 @@ class SnowProperties(Shown):
 
 
 def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
+    """Value divided by `size`, with unit and with its interval in brackets, if there is one."""
     text = amount(None if value is None else value / size, unit)
     return text if interval is None else f"{text} ({span(interval[0] / size, interval[1] / size)})"
 

@@ -91,6 +91,7 @@ def _lengths(A: FloatArray) -> FloatArray:
 
 
 def _require_few(p: int) -> None:
+    """Reject a number of coefficients that is not from 1 to the maximum."""
     if not 1 <= p <= MOST_COEFFICIENTS:
         raise ParameterError("{p} coefficients; 1 to {most} are allowed").tag("too_many", p=p, most=MOST_COEFFICIENTS)
 

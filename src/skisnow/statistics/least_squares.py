@@ -148,6 +148,7 @@ def _warn_if_ill_conditioned(columns: FloatArray) -> None:
 
 
 def _dependence_problem(count: int, dependent: list[int], rank: int) -> Message:
+    """Message that the data determine only `rank` of `count` coefficients; predictor 0 is the intercept."""
     return Message(
         "the data determine only {rank} of {count} coefficients: {names} does not vary or follows from the other "
         "columns; remove it, or measure at more settings of it",

@@ -72,7 +72,7 @@ class FrictionLaw(CheckedParameters, abc.ABC):
         result: FloatArray = -size[..., None] * direction
         return result
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
         """Compare μ at the comparison speed with the measured range."""
         mu = self._coefficient(np.asarray(COMPARISON_SPEED))
         if np.any(mu != 0):

@@ -216,7 +216,8 @@ class ElementCountLaw(PenetrationLaw):
     elements_per_volume: Annotated[float, ABOVE_ZERO]
     force_per_element: Annotated[float, ABOVE_ZERO]
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Warn of a hardness outside the measured range."""
         SNOW_HARDNESS.warn_outside(self.snow_hardness, "ElementCountLaw", stacklevel=4)
 
     @property

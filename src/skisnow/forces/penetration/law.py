@@ -119,7 +119,8 @@ class DeepeningPoint(PointLaw):
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Pressure q (N/m²), work ∫q dε (J/m²) and k_u (N/m³) at maximum depths (m)."""
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject an unloading_ratio that is below 1 or not finite."""
         if not 1.0 <= self.unloading_ratio < np.inf:
             raise ParameterError(
                 "{kind}: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite"

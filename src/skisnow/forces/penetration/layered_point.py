@@ -123,8 +123,9 @@ class ProfilePoint(DeepeningPoint):
     tops: tuple[float, ...]
     shares: Annotated[tuple[float, ...], ABOVE_ZERO]
 
-    def _check_together(self) -> None:
-        DeepeningPoint._check_together(self)
+    def _check_further(self) -> None:
+        """Reject layers whose tops do not rise from 0, or that are not as many as the shares."""
+        DeepeningPoint._check_further(self)
         if len(self.tops) != len(self.shares) or self.tops[0] != 0.0 or np.any(np.diff(self.tops) <= 0.0):
             raise ParameterError(
                 "ProfilePoint: tops are {tops}; they must rise from 0, one for each of {count} shares"

@@ -77,7 +77,8 @@ class _Hypoplastic(PointLaw):
     _factor: ClassVar[float] = 1.0
     """Growth of the stress of virgin snow with depth, over H_V."""
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject an unloading_ratio below 1, which would create energy."""
         if not self.unloading_ratio >= 1.0:
             raise ParameterError(
                 "{kind}: unloading_ratio k_u/H_V is {unloading_ratio!r}; it must be at least 1 (1 is elastic, math.inf "
@@ -86,6 +87,7 @@ class _Hypoplastic(PointLaw):
 
     @property
     def _loading_stiffness(self) -> float:
+        """Increase of the pressure by depth on first loading (N/m³)."""
         return self._factor * self.snow_hardness
 
     @property
@@ -279,6 +281,7 @@ class MeanPressurePoint(DeepeningPoint):
         return (self.ramp_depth,)
 
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Pressure (N/m²), its integral over depth (N/m) and unloading stiffness (N/m³) at the largest depth (m)."""
         deepest = np.asarray(deepest, float)
         ramp = np.minimum(deepest, self.ramp_depth)
         loaded = 2.0 * self.pressure_slope * deepest + self.pressure_offset * np.minimum(1.0, deepest / self.ramp_depth)

@@ -151,6 +151,7 @@ class BilinearLaw(PenetrationLaw):
         return self.hardness * (a * tool.contact_area(depth, angle) + b * tool.displaced_volume(depth, angle))
 
     def _coefficient_at(self, name: str, at_zero: float, slope: float, angle: FloatArray) -> FloatArray:
+        """Coefficient at_zero + slope ϑ at edge angles (rad); rejects a negative one."""
         value: FloatArray = at_zero + slope * angle
         if np.any(value < 0):
             worst = float(angle.flat[int(np.argmin(value))])

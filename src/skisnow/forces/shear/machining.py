@@ -68,7 +68,8 @@ class MachiningShear(ShearLaw):
     transverse_friction: Annotated[float, NOT_BELOW_ZERO]
     least_shear_plane: float = field(default=0.0, kw_only=True)
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject a least_shear_plane outside 0 to π/4, and warn of a strength outside the measured range."""
         if not 0.0 <= self.least_shear_plane <= RIGHT_ANGLE / 2.0:
             raise ParameterError(
                 "MachiningShear: least_shear_plane is {least_shear_plane!r} rad; it must lie between 0 and π/4"
@@ -84,6 +85,7 @@ class MachiningShear(ShearLaw):
         return thrust * np.maximum(np.asarray(edge_depth, float), 0.0) * np.asarray(edge_length, float)
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Cutting stress of Eqn 10 (N/m²), by the edge angle (rad) only."""
         cut = self._cut_angle(angle)
         return cutting_stress(self.dynamic_shear_strength, cut, transverse_friction=self.transverse_friction)
 
@@ -138,7 +140,8 @@ class IceCuttingShear(ShearLaw):
     edge_depth_range: ClassVar[MeasuredRange | None] = ICE_CUTTING_DEPTH
     edge_angle_range: ClassVar[MeasuredRange | None] = ICE_CUTTING_EDGE_ANGLE
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject coefficients that are not finite, or whose rows are empty or of different lengths."""
         rows = self.ice_coefficients
         if len({len(row) for row in rows}) != 1 or not rows[0] or not np.all(np.isfinite(rows)):
             raise ParameterError(
@@ -157,6 +160,7 @@ class IceCuttingShear(ShearLaw):
             return force / np.tan(edge_angle)
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:
+        """Stress (N/m²) by depth (m) and edge angle (rad); rejects a negative one."""
         stress: FloatArray = self.snow_over_ice * np.polynomial.polynomial.polyval2d(
             depth, angle - RIGHT_ANGLE, np.asarray(self.ice_coefficients, float)
         )

@@ -105,7 +105,8 @@ class AngleShear(ShearLaw):
     flat_shear_stress: Annotated[float, ABOVE_ZERO, FAILURE_SHEAR_STRESS]
     relative_decrease: Annotated[float, FINITE]
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject a relative_decrease that makes the stress negative at 90°."""
         if self.relative_decrease * RIGHT_ANGLE > 1.0:
             raise ParameterError(
                 "AngleShear: with a relative_decrease of {relative_decrease!r} per rad the stress is negative on an "
@@ -155,7 +156,8 @@ class DensityShear(ShearLaw):
 
     snow_density: Annotated[float, GROOMED_SNOW_DENSITY]
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject a density at which Eqn 14 gives no strength, or above that of ice."""
         intercept, slope = STRESS_BY_DENSITY
         minimum = -intercept / slope
         if not minimum < self.snow_density <= ICE_DENSITY:
@@ -217,7 +219,8 @@ class NaturalDensityShear(ShearLaw):
 
     snow_density: Annotated[float, NATURAL_SNOW_DENSITY]
 
-    def _check_together(self) -> None:
+    def _check_further(self) -> None:
+        """Reject a density at or below 112.3 kg/m³, where the square rises again, or above that of ice."""
         if not LEAST_DENSITY < self.snow_density <= ICE_DENSITY:
             raise ParameterError(
                 "NaturalDensityShear: snow_density is {snow_density!r} kg/m³; the square (0.1027 ρ - 11.5323)² is 0 "
