@@ -9,6 +9,7 @@ import ssl
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -187,7 +188,7 @@ def test_new_files_take_the_place_of_old_ones(tmp_path: Path) -> None:
     write(tmp_path, OLD | OWN)
     replace_old_by_new(tmp_path)
     assert seen(tmp_path) == NEW | OWN
-    assert list(tmp_path.glob(".*")) == []
+    assert prepare_folder(tmp_path) == []
 
 
 @pytest.mark.parametrize("name", ["track", "figures/b"])
@@ -237,7 +238,7 @@ def killed_at(folder: Path, step: int) -> bool:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_a_kill_at_any_step_leaves_no_parts_of_two(tmp_path: Path) -> None:
-    complete = 0
+    kept, finished = 0, 0
     for step in range(100):
         folder = tmp_path / str(step)
         write(folder, OLD | OWN)
@@ -246,20 +247,34 @@ def test_a_kill_at_any_step_leaves_no_parts_of_two(tmp_path: Path) -> None:
         assert len(set(found.values())) <= 2, found  # the user's own, and those of one writing
         assert found["notes"] == "the user's"
         assert "summary" not in found or found in (OLD | OWN, NEW | OWN)
-        complete += was_killed and "summary" in found
+        said = prepare_folder(folder)
+        assert len(said) == was_killed
+        assert list(folder.glob(".*")) == []
+        assert seen(folder) in (OLD | OWN, NEW | OWN)
+        kept += was_killed and seen(folder) == OLD | OWN
+        finished += was_killed and seen(folder) == NEW | OWN
         if not was_killed:
             break
-    assert step > 5
-    assert complete > 0
+    assert kept > 0
+    assert finished > 5
 
 
-def test_what_a_killed_process_left_a_day_ago_is_removed(tmp_path: Path) -> None:
-    for name in (".skisnow-ab12_xyz", ".skisnow-00000000", ".of-mine"):
+def test_folders_that_an_earlier_version_left_are_removed(tmp_path: Path) -> None:
+    for name in (".report-ab12_xyz", ".run-00000000"):
         (tmp_path / name / "figures").mkdir(parents=True)
-    for name in (".skisnow-ab12_xyz", ".of-mine"):
-        os.utime(tmp_path / name, (1e9, 1e9))
-    prepare_folder(tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".of-mine", ".skisnow-00000000"]
+    (tmp_path / ".report-of-mine").mkdir()
+    assert sorted(prepare_folder(tmp_path)) == [
+        f"{tmp_path / '.report-ab12_xyz'} was left by a process that was killed; it is removed",
+        f"{tmp_path / '.run-00000000'} was left by a process that was killed; it is removed",
+    ]
+    assert [path.name for path in tmp_path.iterdir()] == [".report-of-mine"]
+
+
+def test_what_another_process_is_writing_stays(tmp_path: Path) -> None:
+    with staged(tmp_path, last="summary") as stage:
+        write(stage.path, NEW)
+        assert prepare_folder(tmp_path) == []
+    assert seen(tmp_path) == NEW
 
 
 def open_files() -> int:
@@ -272,8 +287,52 @@ def test_no_file_stays_open(tmp_path: Path) -> None:
     before = open_files()
     for _ in range(3):
         replace_old_by_new(tmp_path)
-        prepare_folder(tmp_path)
+        (tmp_path / ".run-00000000").mkdir()
+        assert len(prepare_folder(tmp_path)) == 1
     assert open_files() == before
+
+
+def test_what_cannot_be_taken_away_is_left_for_the_next_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def kept(*_given: object, **_named: object) -> None:
+        raise PermissionError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "rmdir", kept)
+        replace_old_by_new(tmp_path)
+    assert seen(tmp_path) == NEW
+    assert len(list(tmp_path.glob(".skisnow-*"))) == 1
+    assert len(prepare_folder(tmp_path)) == 1
+    assert list(tmp_path.glob(".*")) == []
+
+
+def test_a_stage_is_made_by_one_process_at_a_time(tmp_path: Path) -> None:
+    fcntl = pytest.importorskip("fcntl", reason="locks of files are those of Unix")
+    other = os.open(tmp_path, os.O_RDONLY)
+    fcntl.flock(other, fcntl.LOCK_EX)
+    waiting = Thread(target=replace_old_by_new, args=(tmp_path,))
+    waiting.start()
+    waiting.join(0.2)
+    assert waiting.is_alive()
+    assert seen(tmp_path) == {}
+    os.close(other)
+    waiting.join()
+    assert seen(tmp_path) == NEW
+
+
+def test_an_interrupt_while_files_are_moved_waits_for_the_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path, OLD)
+    original, moved = Path.replace, []
+
+    def replace(self: Path, target: Path) -> Path:
+        moved.append(target.name)
+        if target.name == "page" and moved.count("page") == 1:
+            raise KeyboardInterrupt
+        return original(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(KeyboardInterrupt):
+        replace_old_by_new(tmp_path)
+    assert seen(tmp_path) == NEW
 
 
 def test_an_invalid_place_is_rejected(tmp_path: Path) -> None:

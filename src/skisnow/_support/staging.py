@@ -1,25 +1,34 @@
 """Files that belong together: written to a hidden folder, then moved, so that old and new never mix.
 
-When all files are complete in a hidden folder inside the target, the old files are removed, and only then are the new
-ones moved. A process that is killed before leaves the old files, and during the moves a folder without its last file.
+All files are written to a hidden folder inside the target. When it is complete, a plan is written next to it; only then
+are the old files removed and the new ones moved. At the next start (`prepare_folder`) the remains of a killed process
+are completed if there is a plan, and deleted otherwise. Each process locks its hidden folder.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
+import re
 import shutil
+import sys
 import tempfile
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Final
 
 from .errors import OutputError, ParameterError
 
 _PREFIX: Final = ".skisnow-"
+_HIDDEN: Final = re.compile(r"\.(skisnow|report|run)-[a-z0-9_]{8}")
+_FILES: Final = "files"
+_PLAN: Final = "plan"
+_CLEARED: Final = "cleared"
 _A_DAY_S: Final = 86_400.0
+_MOST_STALE: Final = 10_000
 
 
 @dataclass(slots=True)
@@ -42,32 +51,144 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     last: name of the file whose presence shows that all others are complete: removed first, moved last.
     """
     try:
-        with tempfile.TemporaryDirectory(prefix=_PREFIX, dir=folder, ignore_cleanup_errors=True) as hidden:
-            stage = Stage(Path(hidden))
-            yield stage
-            new = sorted(path.relative_to(hidden) for path in stage.path.rglob("*") if path.is_file())
-            old = [*map(Path, stage.stale), *new]
-            others = [folder / name for name in old if (folder / name).exists()]
-            was_killed = any(path != stage.path for path in folder.glob(f"{_PREFIX}*"))  # a run during its moves
-            if others and not was_killed and not (folder / last).exists():
-                raise OutputError(
-                    "{path} is not from an earlier run and is kept. Choose another folder or move the file."
-                ).tag("file_kept", path=others[0])
-            for name in (Path(last), *old):
-                (folder / name).unlink(missing_ok=True)
-            for name in sorted(new, key=lambda name: (name == Path(last), name)):
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                (stage.path / name).replace(folder / name)
+        hidden, lock = _new_hidden(folder)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    stage = Stage(hidden / _FILES)
+    try:
+        yield stage
+        _require_own(folder, last, [*stage.stale, *_list_files(stage.path)])
+        write_file(hidden / _PLAN, "\n".join((last, *stage.stale)))
+        try:
+            _carry_out(hidden)
+        except KeyboardInterrupt:
+            _carry_out(hidden)  # it takes a moment, and half of it would be no run at all
+            raise
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        if not (hidden / _PLAN).exists():
+            shutil.rmtree(hidden, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def prepare_folder(folder: Path) -> list[str]:
+    """Create a folder if needed, check that it can be written, and complete or remove stages of killed processes.
+
+    Returns: a sentence about each of these stages.
+    """
+    require_writable(folder)
+    try:
+        with _lock_folder(folder):
+            left = sorted(path for path in folder.iterdir() if _HIDDEN.fullmatch(path.name) and path.is_dir())
+            return [sentence for hidden in left if (sentence := _finish_or_remove(hidden))]
     except OSError as error:
         raise cannot_write(folder, error) from error
 
 
-def prepare_folder(folder: str | Path) -> None:
-    """Create a folder if needed, check that it can be written, and remove what killed processes left a day ago."""
-    require_writable(folder)
-    for hidden in Path(folder).glob(f"{_PREFIX}*"):
-        if time.time() - hidden.stat().st_mtime > _A_DAY_S:
-            shutil.rmtree(hidden, ignore_errors=True)
+def _finish_or_remove(hidden: Path) -> str | None:
+    """Complete or remove the stage of a killed process; returns a sentence about it, None if its process still runs."""
+    lock = _locked(hidden)
+    if lock is None and not _is_old(hidden):
+        return None
+    try:
+        if not (hidden / _PLAN).is_file():
+            return f"{hidden} was left by a process that was killed; it is removed"
+        _carry_out(hidden)
+        return f"{hidden.parent}: the files that a killed process had not yet moved are in place now"
+    finally:
+        shutil.rmtree(hidden, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def _new_hidden(folder: Path) -> tuple[Path, int | None]:
+    with _lock_folder(folder):
+        hidden = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+        lock = _locked(hidden)
+    (hidden / _FILES).mkdir()
+    return hidden, lock
+
+
+def _carry_out(hidden: Path) -> None:
+    """Remove all old files, then move the new ones into place; after an interruption it can be repeated."""
+    folder, stage = hidden.parent, hidden / _FILES
+    try:
+        last, *stale = (hidden / _PLAN).read_text(encoding="utf-8").split("\n")
+        _require_inside((last, *stale))
+    except ValueError as error:
+        raise OSError(f"the plan of a killed process is damaged; remove {hidden} and write again") from error
+    new = _list_files(stage)
+    if not (hidden / _CLEARED).exists():
+        for name in (Path(last), *map(Path, stale), *new):
+            (folder / name).unlink(missing_ok=True)
+        (hidden / _CLEARED).touch()
+    for name in sorted(new, key=lambda name: (name == Path(last), name)):
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        (stage / name).replace(target)
+    (hidden / _PLAN).unlink()
+
+
+def _list_files(stage: Path) -> list[Path]:
+    return sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
+
+
+def _require_own(folder: Path, last: str, names: Iterable[str | Path]) -> None:
+    """Raise an OutputError if a folder has files of these names, but not the `last` file of an earlier run."""
+    others = [folder / name for name in names if (folder / name).exists()]
+    if others and not (folder / last).exists():
+        raise OutputError("{path} is not from an earlier run and is kept. Choose another folder or move the file.").tag(
+            "file_kept", path=others[0]
+        )
+
+
+def _require_inside(names: Sequence[str]) -> None:
+    """Raise a ValueError for a relative path that leads out of the folder or is invalid, and for too many paths."""
+    if len(names) > _MOST_STALE:
+        raise ValueError(len(names))
+    for name in names:
+        path = PurePath(name)
+        if not name or "\0" in name or path.is_absolute() or ".." in path.parts or not path.name:
+            raise ValueError(name)
+
+
+def _is_old(hidden: Path) -> bool:
+    """True on Windows, where locks are not used, for a stage without writes for a day; it counts as abandoned."""
+    return sys.platform == "win32" and time.time() - hidden.stat().st_mtime > _A_DAY_S
+
+
+@contextmanager
+def _lock_folder(folder: Path) -> Iterator[None]:
+    """Wait until no other process creates or removes a stage in the folder."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _locked(hidden: Path) -> int | None:
+    """File descriptor that locks a stage until it is closed; None if another process has the lock, or without locks."""
+    if sys.platform == "win32":
+        return None
+    import fcntl
+
+    handle = os.open(hidden, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(handle)
+        return None
+    return handle
 
 
 def require_ending(path: str | Path, *endings: str) -> None:

@@ -30,14 +30,14 @@ def print_warnings(warnings: Iterable[object]) -> None:
 
 
 def prepare_output(folder: Path | None) -> None:
-    """Require a writable folder, and clean up after killed processes; nothing without a folder.
+    """Create a writable folder, and print notes on the removal of remains of killed processes; nothing if it is None.
 
     Raises OutputError: the folder cannot be made or written.
     """
     from .._support.staging import prepare_folder
 
-    if folder is not None:
-        prepare_folder(folder)
+    for sentence in prepare_folder(folder) if folder is not None else ():
+        print(sentence, file=sys.stderr)
 
 
 def prepare_figure(place: Path | None) -> None:

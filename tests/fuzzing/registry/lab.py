@@ -1,4 +1,4 @@
-"""Readers of the store and of the lab: the SQLite store, uploads, jobs."""
+"""Readers of the store and of the lab: the SQLite store, uploads, jobs, what a killed process left."""
 
 import asyncio
 import json
@@ -11,6 +11,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from skisnow._support.errors import SkisnowError
+from skisnow._support.staging import prepare_folder
 from skisnow.campaign.store import Journals, Store, export_corrected, replay_journal, sync, write_campaign
 from skisnow.web.lab_skis import read_ski_files
 from skisnow.web.lab_tracks import Placing, TrackFolders
@@ -24,7 +25,7 @@ from tests.campaign.store.test_journal import campaign_with
 from ..archives import archive
 from ..databases import SQLITE
 from ..reader import Files, Reader
-from ..texts import TABLE
+from ..texts import TABLE, TEXT
 from ..trees import JSON, TOML
 from .field import _campaign
 from .motion import run_files
@@ -141,7 +142,14 @@ def _track_files() -> Files:
     return {"run-1/run.nc": run_files()["run.nc"], "tracks/t-1/about.json": placing, "tracks/t-1/track.csv": _TRACK}
 
 
+_HIDDEN = ".skisnow-abcd1234"
+_PLAN = {f"run/{_HIDDEN}/plan": b"summary.json\ntrack.csv\nfigures/a.svg", f"run/{_HIDDEN}/files/summary.json": b"{}"}
+
 READERS = (
+    Reader(
+        name="plan of a killed process", target=f"run/{_HIDDEN}/plan", files=lambda: _PLAN, mutations=TEXT,
+        read=lambda folder: prepare_folder(folder / "run"), covers=("_support.staging:_carry_out",),
+    ),
     Reader(
         name="store.sqlite3", target="store.sqlite3", files=_store, read=_every_use, mutations=SQLITE,
         covers=("campaign.store.engine:_engine.open_file", "_support.sqlite_file:connect"),

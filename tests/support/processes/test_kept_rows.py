@@ -87,6 +87,22 @@ def test_rows_that_are_read_are_nobody_elses_meanwhile(place: Path) -> None:
     KeptRows.opened(place, "f").close()
 
 
+@pytest.mark.parametrize(
+    "change", ["replace(sql, 'primary key', 'xxxxxxxxxxx')", "replace(sql, 'checksum', 'checksux')"]
+)
+def test_a_file_whose_tables_have_changed_is_damaged(change: str, place: Path) -> None:
+    """Without its key a point has no number."""
+    kept = KeptRows.opened(place, "f")
+    kept.add([(3, "{}")])
+    kept.close()
+    with closing(sqlite3.connect(place)) as database:
+        database.execute("pragma writable_schema = on")
+        database.execute(f"update sqlite_master set sql = {change} where name = 'rows'")
+        database.commit()
+    with raises(ParameterError, "damaged"):
+        KeptRows.opened(place, "f")
+
+
 @pytest.mark.parametrize("damage", [b"what hours have found", b"SQLite format 3\0" + b"\1" * 5000])
 def test_a_file_that_is_none_of_rows_is_reported_and_left(damage: bytes, place: Path) -> None:
     place.write_bytes(damage)
@@ -208,10 +224,19 @@ def test_sound_rows_are_read(damaged_place: Path) -> None:
 @pytest.mark.parametrize(
     "statement",
     [
+        "update rows set row = replace(row, 'x', 'y') where number = 7",
+        "update rows set row = 5 where number = 7",
         "update rows set row = cast(x'ff' as text) where number = 7",
+        "update rows set number = 1000 where number = 7",
+        "update rows set checksum = 0 where number = 7",
+        "update about set value = '41' where name = 'points'",
+        "delete from about where name = 'fingerprint'",
         "delete from about",
+        "alter table rows drop column checksum",
         "alter table rows rename column row to words",
         "drop table rows",
+        "alter table rows rename to r; create view rows as select * from r",
+        "insert into rows values (-1, '{}', 0)",
     ],
 )
 def test_a_change_of_the_content_is_an_error(damaged_place: Path, statement: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 import weakref
+import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,9 +23,11 @@ NumberedText: TypeAlias = tuple[int, str]
 
 _TABLES: Final = """
 create table about (name text primary key, value text not null) without rowid;
-create table rows (number integer primary key, row text not null);
+create table rows (number integer primary key, row text not null, checksum integer not null);
 """
-_FORM: Final = "skisnow rows 4"
+_FORM: Final = "skisnow rows 3"
+_CHECKSUM: Final = "checksum"
+"""Name in the table `about` of the checksum of all its other rows."""
 
 
 class KeptRows:
@@ -33,7 +36,8 @@ class KeptRows:
     Each row is written as soon as it is finished. A kill at any moment loses no row that `add` has accepted. Only one
     process at a time has the file open. After a power failure, rows that had not reached the disk are computed again.
 
-    The pages of the file are checked at each opening: a damaged file is an error that names it.
+    Every row has a checksum. The schema and the pages are checked at each opening, a checksum when its row is read: a
+    damaged file is an error that names it, whatever is damaged in it.
 
     path: the file, None: in memory.
     """
@@ -76,7 +80,7 @@ class KeptRows:
             with _errors(path, rows._database):
                 rows._lock_and_begin(about)
                 entries = rows.about()
-            if about is not None and entries.get("fingerprint") != about["fingerprint"]:
+            if about is not None and entries["fingerprint"] != about["fingerprint"]:
                 raise ParameterError(
                     "{path} contains the finished points of another study, or of this one before its inputs, one of "
                     "its files or skisnow changed. Undo the change to continue them, or remove that file to start "
@@ -98,14 +102,21 @@ class KeptRows:
             if about is not None and not run("select count(*) from sqlite_master").fetchone()[0]:
                 for statement in _TABLES.split(";\n"):
                     run(statement)
-                self._database.executemany("insert into about values (?, ?)", about.items())
+                whole = {**about, _CHECKSUM: _checksum_of(about)}
+                self._database.executemany("insert into about values (?, ?)", whole.items())
+            empty = KeptRows()
+            if _statements(self._database) != _statements(empty._database):
+                raise sqlite3.DatabaseError("it has other tables")
             if self.about().get("form") != _FORM:
                 raise sqlite3.DatabaseError("it has another form")
             require_sound_pages(self._database)
 
     def about(self) -> dict[str, str]:
         """Entries that describe the batch, such as its fingerprint, by name."""
-        return dict(self._run_query("select name, value from about"))
+        entries = dict(self._run_query("select name, value from about"))
+        if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
+            raise _damage_error(self.path, "the description of the batch has changed")
+        return entries
 
     def add(self, rows: Iterable[NumberedText]) -> int:
         """Store rows, all or none, so that a kill does not lose them; return their number."""
@@ -113,7 +124,10 @@ class KeptRows:
         with _errors(self.path, self._database):
             self._database.execute("begin")
             with self._database:
-                self._database.executemany("insert into rows values (?, ?)", new)
+                self._database.executemany(
+                    "insert into rows values (?, ?, ?)",
+                    ((number, text, _checksum(number, text)) for number, text in new),
+                )
         return len(new)
 
     def __len__(self) -> int:
@@ -131,7 +145,7 @@ class KeptRows:
 
     def row(self, number: int) -> Row:
         """The row of a finished point."""
-        ((text,),) = self._run_query("select row from rows where number = ?", number)
+        ((_, text),) = self._select_checked_rows("where number = ?", number)
         row: Row = own_json(text)
         return row
 
@@ -141,7 +155,13 @@ class KeptRows:
 
     def texts(self) -> Iterator[NumberedText]:
         """Numbers of the finished points with their rows as JSON text, in rising order."""
-        return ((number, text) for number, text in self._run_query("select number, row from rows order by number"))
+        return self._select_checked_rows("order by number")
+
+    def _select_checked_rows(self, which: str, *parameters: object) -> Iterator[NumberedText]:
+        for number, text, checksum in self._run_query(f"select number, row, checksum from rows {which}", *parameters):
+            if not isinstance(text, str) or checksum != _checksum(number, text):
+                raise _damage_error(self.path, f"the row of point {number + 1} has changed")
+            yield number, text
 
     def _run_query(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
         """Records of a query one by one; errors of the database become those of the file."""
@@ -172,6 +192,19 @@ def forget(path: Path) -> None:
 def json_text(value: Any) -> str:
     """A value, such as a row, as JSON on one line."""
     return json.dumps(value, ensure_ascii=True, separators=(",", ":"))
+
+
+def _statements(database: sqlite3.Connection) -> list[tuple[str, str]]:
+    """Names of all tables of a database with the SQL statements that created them."""
+    return database.execute("select name, sql from sqlite_master where sql is not null order by name").fetchall()
+
+
+def _checksum(number: int, text: str) -> int:
+    return zlib.crc32(f"{number} {text}".encode("utf-8", "surrogatepass"))
+
+
+def _checksum_of(about: Mapping[str, object]) -> str:
+    return str(zlib.crc32(repr(sorted(about.items(), key=str)).encode("utf-8", "surrogatepass")))
 
 
 @contextmanager

@@ -100,7 +100,8 @@ def write_report(
     require_language(language)
     report = progress or silent
     out = Path(out)
-    prepare_folder(out)
+    for message in prepare_folder(out):
+        report(message)
     with paused_collector(), staged(out, last=RESULTS) as stage:
         stage.stale += _write(ReportData(analysis), stage.path, language, report)
     return out / "report.html"

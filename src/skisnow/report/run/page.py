@@ -227,7 +227,8 @@ def write_run(
     """
     require_language(language)
     folder = Path(folder)
-    prepare_folder(folder)
+    for sentence in prepare_folder(folder):
+        progress(sentence)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
         stage.stale += _STALE
