@@ -5,6 +5,7 @@ import math
 import os
 import re
 import tomllib
+import tracemalloc
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,12 +25,16 @@ from skisnow._support.user_files import (
     workbook,
 )
 from skisnow._support.user_files.text_files import (
+    DEEPEST,
     LARGEST_WHOLE,
+    LONGEST_KEY,
     LONGEST_TEXT,
+    MOST_DOTS,
     MOST_TOML_BYTES,
     named,
     require_sound,
     shown,
+    too_deep,
 )
 from skisnow.scenario import load_scenario, read_profile
 from skisnow.ski import read_ski
@@ -48,6 +53,7 @@ def test_a_text_in_a_message_is_short_and_prints() -> None:
 def test_places() -> None:
     assert named((1, "a", "b", 3)) == "[1].a.b[3]"
     assert named(("x\n",)) == "x?"
+    assert (too_deep().line, too_deep(7).line) == (None, 7)
 
 
 def test_a_message_names_file_and_line_as_far_as_they_are_known() -> None:
@@ -56,6 +62,10 @@ def test_a_message_names_file_and_line_as_far_as_they_are_known() -> None:
     found = ContentError("wrong", line=3).of("a.toml")
     assert (str(found), found.what, found.line) == ("a.toml, line 3: wrong", "wrong", 3)
     assert str(ContentError("wrong", sentence="All of it.")) == "All of it."
+
+
+def nested(depth: int) -> object:
+    return {"a": nested(depth - 1)} if depth > 1 else []
 
 
 def rejection(value: object, *, infinite: bool = False) -> str | None:
@@ -68,8 +78,8 @@ def rejection(value: object, *, infinite: bool = False) -> str | None:
 
 
 def test_at_the_edge_all_is_sound() -> None:
-    edge = [LARGEST_WHOLE, -LARGEST_WHOLE, "x" * LONGEST_TEXT, "ü", True, "\ud7ff\ue000"]
-    assert [rejection(value) for value in edge] == [None] * 6
+    edge = [LARGEST_WHOLE, -LARGEST_WHOLE - 1, "x" * LONGEST_TEXT, {"k" * LONGEST_KEY: 1}, "ü", True, "\ud7ff\ue000"]
+    assert [rejection(value) for value in (*edge, nested(DEEPEST))] == [None] * 8
     assert rejection([math.inf, math.nan], infinite=True) is None
 
 
@@ -79,7 +89,8 @@ def test_at_the_edge_all_is_sound() -> None:
         (LARGEST_WHOLE + 1, coded("number_too_large", place="the value")),
         (-LARGEST_WHOLE - 2, "number_too_large"),
         ([1, [2, -math.inf]], coded("number_too_large", place="[2][2]")),
-        ({"a": {"k" * (LONGEST_TEXT + 1): 1}}, coded("text_too_long", count=100001)),
+        ({"a": {"k" * (LONGEST_KEY + 1): 1}}, coded("text_too_long", count=201)),
+        (nested(DEEPEST + 1), coded("nested_too_deep", deepest=32)),
         ("ü\0", "invalid_character"),
         ("\udfff", "invalid_character"),
         ("\ud800", "invalid_character"),
@@ -95,16 +106,19 @@ def test_a_sheet_has_as_many_rows_as_excel_writes() -> None:
 
 
 def test_what_is_within_the_limits_is_as_json_reads_it() -> None:
-    text = '{"a": [1, -9223372036854775807, 1.5e-3, null, true, "\\u00e9 \\ud83c\\udfbf"], "b": {"a": {}}}'
+    text = '{"a": [1, -9223372036854775808, 1.5e-3, null, true, "\\u00e9 \\ud83c\\udfbf"], "b": {"a": {}}}'
     assert json_value(text) == json.loads(text)
     assert json_value(text.encode()) == json.loads(text)
+    edge = "[" * DEEPEST + "]" * DEEPEST
+    assert json_value(edge) == json.loads(edge)
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ('{"a":' * 100_000, "nested_too_deep"),
-        ("9" * 5000, "not_json"),
+        ("[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), coded("nested_too_deep", deepest=32)),
+        ('{"a":' * 100_000, coded("nested_too_deep", deepest=32)),
+        ("9" * 5000, coded("number_too_large", count=5000)),
         ('{"a": [0, 9223372036854775808]}', coded("number_too_large", place="a[2]")),
         ('{"a": 1e400}', coded("number_too_large", place="a")),
         ("[NaN]", coded("not_json", word="NaN")),
@@ -189,17 +203,25 @@ far = [inf, nan]
 
 def test_what_is_within_the_limits_is_as_tomllib_reads_it() -> None:
     assert repr(toml_values(SOUND)) == repr(tomllib.loads(SOUND))
+    brackets = "[" * (DEEPEST - 1) + "]" * (DEEPEST - 1)
+    edge = f"a = {brackets}\n{'.'.join('b' * (MOST_DOTS + 1))} = 1\n{'c' * LONGEST_KEY} = 1"
+    assert toml_values(edge) == tomllib.loads(edge)
 
 
 @pytest.mark.parametrize(
     ("text", "line", "told"),
     [
-        ("a = " + "[" * 3000 + "]" * 3000, None, "nested_too_deep"),
-        ("a = 9" + "9" * 5000, None, "not_toml"),
+        ("x = 1\na = " + "[" * 3000 + "]" * 3000, 2, coded("nested_too_deep", deepest=32)),
+        ("a = " + "{a=" * 3000, 1, coded("nested_too_deep", deepest=32)),
+        ("\n\n[" + ".".join("a" * 20_000) + "]", 3, coded("key_too_long", count=16)),
+        (" . ".join('"a"' for _ in range(20_000)) + " = 1", 1, coded("key_too_long", count=16)),
+        ("a = 9" * 1 + "9" * 5000, 1, coded("key_too_long", count=5001)),
+        ("a = 1" + "0" * 400, 1, coded("key_too_long", count=401)),
         ("a = 1" + "0" * 30, None, coded("number_too_large", place="a")),
         ("[a]\nb = [1, -9223372036854775809]", None, coded("number_too_large", place="a.b[2]")),
         (r'profile = "\u0000.csv"', None, coded("invalid_character", place="profile")),
         (r'"a\u0000" = 1', None, "invalid_character"),
+        (f'"{"k" * 201}" = 1', None, coded("text_too_long", count=201, longest=200)),
         (f'a = "{"k" * (LONGEST_TEXT + 1)}"', None, coded("text_too_long", place="a", count=100001)),
         ("a = 1\n" * MOST_TOML_BYTES, None, coded("too_large", longest=1048576)),
         ("a = 1\nb == 2", 2, "not_toml"),
@@ -211,6 +233,18 @@ def test_toml_beyond_the_limits(text: str, line: int | None, told: str | Coded) 
         toml_values(text, title="some.toml")
     assert error.value.line == line
     assert str(error.value).startswith("some.toml")
+
+
+def test_a_key_of_many_dots_costs_no_memory() -> None:
+    text = "a." * 20_000 + "a = 1"
+    tracemalloc.start()
+    try:
+        with pytest.raises(ContentError):
+            toml_values(text)
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert most < 20 * len(text)
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,9 @@ FIRST = "xl/worksheets/sheet1.xml"
     ("part", "content", "told"),
     [
         ("xl/bomb.bin", b"\0" * ((1 << 20) + 1), coded("too_large", limit=1)),
+        (FIRST, b'<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]>' + SHEET % b"", "not_readable"),
+        (FIRST, "<!DOCTYPE a>".encode("utf-16") + SHEET[:0], "not_readable"),
+        (FIRST, b"<a>" * 65, "too_large"),
         (FIRST, SHEET % b'<row r="99999999"><c r="A1"><v>1</v></c></row>', coded("too_large", limit=1000)),
         (FIRST, SHEET % b'<row r="1"><c r="ALM1"><v>1</v></c></row>', coded("too_large", row=1, count=1001)),
         (FIRST, SHEET % b'<row r="7"><c r="C7"><f>1+1</f></c></row>', coded("formula_without_value", cell="C7")),
@@ -104,6 +107,7 @@ def test_unneeded_content_rejected(
         (b"PK\3\4 and no more", "not_readable"),
         (b"", "not_readable"),
         (b"\xd0\xcf\x11\xe0" + b"\0" * 600, "not_readable"),
+        (b"PK\1\2" * 2001, coded("too_large", limit=2000)),
         (b" " * (workbook.MOST_WORKBOOK_BYTES + 1), "too_large"),
     ],
 )

@@ -10,7 +10,7 @@ from dataclasses import MISSING, fields
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from .text_files import ContentError, plain_text, require_sound, shown, too_deep
+from .text_files import LARGEST_WHOLE, ContentError, plain_text, require_sound, shown, too_deep
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 MOST_JSON_BYTES: Final = 1 << 26
+_MOST_DIGITS: Final = len(str(LARGEST_WHOLE)) + 1
 
 
 def read_json(path: str | Path, *, most_bytes: int = MOST_JSON_BYTES) -> Any:
@@ -32,7 +33,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
         number, length of a text), repeats a key of an object, or contains an invalid character.
     """
     try:
-        value = json.loads(text, object_pairs_hook=_checked_dict, parse_constant=_refuse_constant)
+        value = json.loads(text, object_pairs_hook=_checked_dict, parse_int=_integer, parse_constant=_refuse_constant)
         require_sound(value, infinite=False)
     except ContentError as error:
         raise error.of(title) from None
@@ -57,6 +58,14 @@ def _checked_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
         raise ContentError("the key {key} is twice in one object. Remove one.").tag("repeated_key", key=shown(twice))
     return entries
+
+
+def _integer(digits: str) -> int:
+    if len(digits) > _MOST_DIGITS:
+        raise ContentError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
+            "number_too_large", count=len(digits), largest=LARGEST_WHOLE
+        )
+    return int(digits)
 
 
 def _refuse_constant(word: str) -> None:

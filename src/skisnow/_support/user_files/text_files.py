@@ -112,6 +112,10 @@ def natural_number(text: str) -> int | None:
     return int(text) if len(text) <= MOST_DIGITS and text.isdecimal() else None
 
 
+DEEPEST: Final = 32
+"""Tables and lists within one another; the program's own files have six at most."""
+
+LONGEST_KEY: Final = 200
 LONGEST_TEXT: Final = 100_000
 LARGEST_WHOLE: Final = 2**63 - 1
 """TOML's; others programs that read JSON stop earlier."""
@@ -120,35 +124,57 @@ Place: TypeAlias = tuple[str | int, ...]
 
 
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
-    """Raise a ContentError for overlong or invalid texts, and too large or non-finite numbers.
+    """Raise a ContentError for overlong or invalid texts, too large or non-finite numbers, and too deep nesting.
 
     infinite: True if a number may be infinite or NaN, as TOML allows.
     place: keys and indices that lead to the value, for messages.
     """
     if isinstance(value, str):
-        if len(value) > LONGEST_TEXT:
-            raise ContentError("{place} has {count} characters; allowed are {longest}. Shorten it.").tag(
-                "text_too_long", place=named(place), count=len(value), longest=LONGEST_TEXT
+        _require_text(value, place, LONGEST_TEXT)
+    elif isinstance(value, int):
+        if not -LARGEST_WHOLE - 1 <= value <= LARGEST_WHOLE:
+            problem = Message(
+                "{place} is beyond the whole numbers, ±{largest}. Write it with a decimal point.",
+                place=named(place),
+                largest=LARGEST_WHOLE,
             )
-        if "\0" in value or not (value.isascii() or value.encode(errors="ignore").decode() == value):
-            raise ContentError("{place} has a NUL character or half a letter, which no text has. Remove it.").tag(
-                "invalid_character", place=named(place)
-            )
-    elif isinstance(value, int | float):
-        if not (abs(value) <= LARGEST_WHOLE if isinstance(value, int) else infinite or math.isfinite(value)):
-            raise ContentError("{place} is beyond the numbers, ±1.8e308 and whole ones ±{largest}. Correct it.").tag(
-                "number_too_large", place=named(place), largest=LARGEST_WHOLE
+            raise ContentError(problem).tag("number_too_large")
+    elif isinstance(value, float):
+        if not infinite and not math.isfinite(value):
+            raise ContentError("{place} is beyond the numbers, ±1.8e308. Correct it.").tag(
+                "number_too_large", place=named(place)
             )
     elif isinstance(value, dict | list):
+        if len(place) >= DEEPEST:
+            raise too_deep()
+        if isinstance(value, dict):
+            for key in value:
+                _require_text(key, (*place, key), LONGEST_KEY)
         pairs = value.items() if isinstance(value, dict) else enumerate(value, start=1)
         for key, inner in pairs:
-            require_sound(key, infinite=infinite, place=(*place, key))
             require_sound(inner, infinite=infinite, place=(*place, key))
 
 
-def too_deep() -> ContentError:
+def too_deep(line: int | None = None) -> ContentError:
     """Error for brackets that are nested too deeply."""
-    return ContentError("brackets are nested too deeply. Remove some.").tag("nested_too_deep")
+    return ContentError("brackets are nested more than {deepest} deep. Remove some.", line=line).tag(
+        "nested_too_deep", deepest=DEEPEST
+    )
+
+
+def _require_text(text: str, place: Place, longest: int) -> None:
+    if len(text) > longest:
+        raise ContentError("{place} has {count} characters; allowed are {longest}. Shorten it.").tag(
+            "text_too_long", place=named(place), count=len(text), longest=longest
+        )
+    if text.isascii():
+        sound = "\0" not in text
+    else:
+        sound = not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
+    if not sound:
+        raise ContentError("{place} has a NUL character or half a letter, which no text has. Remove it.").tag(
+            "invalid_character", place=named(place)
+        )
 
 
 def named(place: Place) -> str:
@@ -177,6 +203,17 @@ def shown_value(value: object, limit: int = 80, written: Callable[[object], str]
 
 
 MOST_TOML_BYTES: Final = 1 << 20
+MOST_DOTS: Final = 16
+
+_TOKENS: Final = re.compile(
+    r'"""(?s:\\.|[^\\])*?(?:"{3,5}|\Z)'
+    r"|'''(?s:.)*?(?:'{3,5}|\Z)"
+    r'|"(?:[^"\\\n]|\\.)*+"?'
+    r"|'[^'\n]*+'?"
+    r"|\#[^\n]*+"
+    r"|[\[\]{}=,\n]"
+    r"|[\w+.:-]+"
+)
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
@@ -207,6 +244,7 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
             raise ContentError("the text has {count} characters; allowed are {longest}.").tag(
                 "too_large", count=len(text), longest=MOST_TOML_BYTES
             )
+        _require_short(text)
         values = tomllib.loads(text)
         require_sound(values, infinite=True)
     except ContentError as error:
@@ -224,3 +262,36 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
             "not_toml"
         ) from error
     return values
+
+
+def _require_short(text: str) -> None:
+    """Raise a ContentError for too deep brackets, long words or keys with many dots, which slow down the parser."""
+    depth = dots = 0
+    for token in _TOKENS.finditer(text):
+        word = token[0]
+        first = word[0]
+        if first in "[{":
+            depth += 1
+            if depth > DEEPEST:
+                raise too_deep(_line_of(text, token))
+        elif first in "]}":
+            depth -= 1
+        if first in "[]{}=,\n":
+            dots = 0
+        elif first not in "\"'#":
+            dots += word.count(".")
+            if dots > MOST_DOTS:
+                raise ContentError("a key has more than {count} dots. Shorten it.", line=_line_of(text, token)).tag(
+                    "key_too_long", count=MOST_DOTS
+                )
+            if len(word) > LONGEST_KEY:
+                problem = Message(
+                    "A number or key has {count} characters; allowed are {longest}. Shorten it.",
+                    count=len(word),
+                    longest=LONGEST_KEY,
+                )
+                raise ContentError(problem, line=_line_of(text, token)).tag("key_too_long")
+
+
+def _line_of(text: str, token: re.Match[str]) -> int:
+    return text.count("\n", 0, token.start()) + 1

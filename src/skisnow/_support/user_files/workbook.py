@@ -1,7 +1,8 @@
 """Workbooks of spreadsheet programs (.xlsx): the cells of their sheets as text, within limits.
 
-The size of the zip archive is checked before openpyxl opens it. Nothing is computed: a formula gives the value that the
-spreadsheet program stored with it, and one without a value is refused.
+The zip archive is checked before openpyxl opens it: sizes are counted while parts are unpacked, not believed,
+and a part with a document type, in which entities could grow without end, is refused. Nothing is computed: a formula
+gives the value that the spreadsheet program stored with it, and one without a value is refused.
 """
 
 from __future__ import annotations
@@ -10,11 +11,12 @@ import io
 import re
 import warnings
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from datetime import date, datetime, time
 from functools import partial
 from typing import Any, Final, TypeAlias
+from xml.parsers import expat
 
 from .text_files import ContentError
 
@@ -23,16 +25,16 @@ Rows: TypeAlias = list[list[str]]
 
 MOST_WORKBOOK_BYTES: Final = 1 << 25
 MOST_UNPACKED_BYTES: Final = 1 << 26
+MOST_PARTS: Final = 2_000
+MOST_SHEETS: Final = 100
 MOST_ROWS: Final = 1 << 20
 """Rows and columns of a sheet of Excel."""
 MOST_COLUMNS: Final = 1_000
+MOST_ELEMENTS: Final = 8_000_000
+DEEPEST_ELEMENT: Final = 64
 
 _TYPED_FRACTION: Final = re.compile(r"\s*[+-]?[0-9]++([.,])[0-9]++\s*")
-_FORMULA_ALONE: Final = re.compile(
-    rb'<c\s(?![^>]*\bt="str")[^>]*?\br="([A-Z]+[0-9]+)"[^>]*>\s*<f\b(?:[^>]*/>|[^>]*>[^<]*</f>)\s*'
-    rb"(?:<v\s*/>|<v>\s*</v>)?\s*</c>"
-)
-"""Cell with a formula but no value; the value of a formula may be an empty text."""
+_CHUNK: Final = 1 << 18
 _OLD_KIND: Final = b"\xd0\xcf\x11\xe0"
 
 
@@ -54,6 +56,10 @@ def workbook_sheets(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of parts that are not read: validations, drawings
         book = _call_openpyxl(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
+        if len(book.worksheets) > MOST_SHEETS:
+            raise ContentError("The workbook has {count} sheets; at most {limit} are read. Remove some.").tag(
+                "too_large", count=len(book.worksheets), limit=MOST_SHEETS
+            )
         places: dict[str, list[tuple[int, int]]] = {} if fractions is None else fractions
         return {
             sheet.title: _read_rows(sheet, places.setdefault(sheet.title, []), like_typed=fractions is None)
@@ -85,29 +91,54 @@ def sheet_layouts(data: bytes) -> dict[str, Layout]:
     _require_sound(data)
     from openpyxl import load_workbook
 
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), zipfile.ZipFile(io.BytesIO(data)) as archive:
         warnings.simplefilter("ignore")
-        book = _call_openpyxl(lambda: load_workbook(io.BytesIO(data), keep_links=False, rich_text=True))
-    return {sheet.title: _layout_of(sheet) for sheet in book.worksheets}
+        book = _call_openpyxl(lambda: load_workbook(io.BytesIO(data), read_only=True, keep_links=False))
+        return {sheet.title: _call_openpyxl(partial(_read_layout, archive, sheet)) for sheet in book.worksheets}
 
 
-def _layout_of(sheet: Any) -> Layout:
-    """Merged, hidden and struck-out cells of a sheet of openpyxl, with rows and columns counted from 0."""
-    cells = {(row - 1, column - 1): cell for (row, column), cell in sheet._cells.items() if cell.value is not None}
-    columns = (dimension for dimension in sheet.column_dimensions.values() if dimension.hidden)
+def _read_layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
+    from openpyxl.utils.cell import range_boundaries
+
+    text = archive.read(sheet._worksheet_path)
+    names = re.findall(rb"<(?:\w+:)?mergeCell\s[^>]*?ref=\"([A-Z]+[0-9]+:[A-Z]+[0-9]+)\"", text)
+    bounds = (range_boundaries(name.decode()) for name in names)
+    hidden = rb"\s(?=[^>]*?\bhidden=\"(?:1|true)\")"
+    rows = re.findall(rb"<(?:\w+:)?row" + hidden + rb"[^>]*?\br=\"([0-9]+)\"", text)
+    spans = re.findall(rb"<(?:\w+:)?col" + hidden + rb"(?=[^>]*?\bmin=\"([0-9]+)\")[^>]*?\bmax=\"([0-9]+)\"", text)
+    struck: Iterable[tuple[int, int]] = ()
+    if any(font.strike for font in sheet.parent._fonts):
+        sheet.reset_dimensions()
+        cells = (cell for row in sheet.iter_rows() for cell in row if cell.value is not None)
+        struck = ((cell.row - 1, cell.column - 1) for cell in cells if cell.font.strike)
     return Layout(
-        tuple((area.min_row - 1, area.min_col - 1, area.max_row - 1, area.max_col - 1) for area in sheet.merged_cells),
+        tuple((top - 1, left - 1, bottom - 1, right - 1) for left, top, right, bottom in bounds),
         sheet.sheet_state != "visible",
-        frozenset(row - 1 for row, dimension in sheet.row_dimensions.items() if dimension.hidden),
-        frozenset(at for span in columns for at in range(span.min - 1, min(span.max, MOST_COLUMNS))),
-        frozenset(place for place, cell in cells.items() if cell.font.strike),
-        frozenset(place for place, cell in cells.items() if _is_partly_struck(cell.value)),
+        frozenset(int(row) - 1 for row in rows),
+        frozenset(at for first, last in spans for at in range(int(first) - 1, min(int(last), MOST_COLUMNS))),
+        frozenset(struck),
+        frozenset(_partly_struck(archive, text)),
     )
 
 
-def _is_partly_struck(value: Any) -> bool:
-    """True if a cell's value is rich text with a part that is struck out."""
-    return isinstance(value, list) and any(getattr(part, "font", None) and part.font.strike for part in value)
+_STRIKE: Final = re.compile(rb"<(?:\w+:)?strike(?:\s+val=\"(?:1|true)\")?\s*/>")
+
+
+def _partly_struck(archive: zipfile.ZipFile, sheet: bytes) -> Iterable[tuple[int, int]]:
+    """Row and column (from 0) of cells with a part of their text struck through; openpyxl does not report these."""
+    from openpyxl.utils.cell import coordinate_to_tuple
+
+    name = next((name for name in archive.namelist() if name.lower().endswith("/sharedstrings.xml")), None)
+    texts = re.findall(rb"<(?:\w+:)?si\s*/>|<(?:\w+:)?si\b.*?</(?:\w+:)?si>", archive.read(name) if name else b"", re.S)
+    struck = {b"%d" % index for index, text in enumerate(texts) if _STRIKE.search(text)}
+    for cell in (
+        re.finditer(rb"<(?:\w+:)?c\s([^>]*)>(.*?)</(?:\w+:)?c>", sheet, re.S) if struck or b"strike" in sheet else ()
+    ):
+        place = re.search(rb"\br=\"([A-Z]+[0-9]+)\"", cell[1])
+        index = re.search(rb"<(?:\w+:)?v>([0-9]+)<", cell[2]) if b't="s"' in cell[1] else None
+        if place and ((index and index[1] in struck) or _STRIKE.search(cell[2])):
+            row, column = coordinate_to_tuple(place[1].decode())
+            yield row - 1, column - 1
 
 
 def _call_openpyxl(doing: Callable[[], Any]) -> Any:
@@ -186,19 +217,77 @@ def _require_sound(data: bytes) -> None:
         raise ContentError(
             "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password."
         ).tag("not_readable")
+    if data.count(b"PK\1\2") > MOST_PARTS:
+        raise ContentError("The workbook has more than {limit} parts, which no table has.").tag(
+            "too_large", limit=MOST_PARTS
+        )
     _call_openpyxl(partial(_require_small_parts, data))
 
 
 def _require_small_parts(data: bytes) -> None:
     """Reject a workbook that is too large when unpacked, or with a formula that has no stored value."""
+    unpacked = 0
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        if sum(part.file_size for part in archive.infolist()) > MOST_UNPACKED_BYTES:  # zipfile reads no byte more
+        for part in archive.infolist():
+            checked = _Part(part.filename) if part.filename.endswith((".xml", ".rels")) else None
+            with archive.open(part) as content:
+                while piece := content.read(_CHUNK):
+                    unpacked += len(piece)
+                    if unpacked > MOST_UNPACKED_BYTES:
+                        raise ContentError(
+                            "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV."
+                        ).tag("too_large", limit=MOST_UNPACKED_BYTES >> 20)
+                    if checked is not None:
+                        checked.parser.Parse(piece, False)
+            if checked is not None:
+                checked.parser.Parse(b"", True)
+
+
+class _Part:
+    """Checker of the XML of one part of a workbook, which its `parser` receives in pieces; raises ContentError."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self.parser = expat.ParserCreate(namespace_separator=" ")
+        self.parser.StartDoctypeDeclHandler = self._refuse_document_type
+        self.parser.StartElementHandler = self._on_begin
+        self.parser.EndElementHandler = self._on_end
+        self.parser.CharacterDataHandler = self._on_text
+        self._elements = self._depth = 0
+        self._cell = ""
+        self._is_text = self._is_value = False
+        self._in_cell: set[str] = set()
+
+    def _refuse_document_type(self, *_: object) -> None:
+        raise ContentError(
+            "The workbook has a document type in its part {part}, which no spreadsheet program writes."
+        ).tag("not_readable", part=self._name)
+
+    def _on_begin(self, name: str, attributes: dict[str, str]) -> None:
+        self._elements += 1
+        self._depth += 1
+        if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
+            raise ContentError("The part {part} of the workbook is larger than any table. Save its sheets as CSV.").tag(
+                "too_large", part=self._name
+            )
+        local = name.rpartition(" ")[2]
+        if local == "c":
+            self._cell = attributes.get("r", "?")
+            self._is_text = attributes.get("t") == "str"
+            self._in_cell.clear()
+        elif local == "f" or (local == "v" and self._is_text):  # the result of a formula may be an empty text
+            self._in_cell.add(local)
+        self._is_value = local == "v"
+
+    def _on_text(self, text: str) -> None:
+        if self._is_value and text.strip():
+            self._in_cell.add("v")
+
+    def _on_end(self, name: str) -> None:
+        self._depth -= 1
+        self._is_value = False
+        if name.endswith(" c") and self._in_cell == {"f"}:
             raise ContentError(
-                "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV."
-            ).tag("too_large", limit=MOST_UNPACKED_BYTES >> 20)
-        for name in archive.namelist():
-            if name.startswith("xl/worksheets/") and (cell := _FORMULA_ALONE.search(archive.read(name))):
-                raise ContentError(
-                    "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
-                    "spreadsheet program and save it."
-                ).tag("formula_without_value", cell=cell[1].decode(), part=name)
+                "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
+                "spreadsheet program and save it."
+            ).tag("formula_without_value", cell=self._cell[:20], part=self._name)

@@ -95,8 +95,8 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
         return [Sheet(PurePath(name).stem, rows, rows, separator=separator)]
     fractions: dict[str, list[tuple[int, int]]] = {}
     try:
-        sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
         layouts = sheet_layouts(data)
+        sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
     except ContentError as error:
         raise error.of(name) from error
     return [_sheet(title, rows, layouts[title], set(fractions[title])) for title, rows in sheets.items() if rows]
