@@ -10,12 +10,15 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.carving import equilibrium
 from skisnow.carving.equilibrium import _conditions, carve, rest
+from skisnow.carving.laws import equivalent_snow
 from skisnow.carving.result import SINKING_DEPTH, Equilibrium, _depth_ratio, equilibrium_of
 from skisnow.carving.solve import Conditions, Solution, solved
+from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.ski import read_ski
 from skisnow.ski.beam import clamped
 from tests.coded import raises
 
+from .laws import Power
 from .synthetic import boot_pose, plain_ski, rigid_ski, snow
 
 HARDNESS = 0.2e9
@@ -132,6 +135,43 @@ def test_the_loads_before_and_behind_the_boot_are_sums_over_the_stations() -> No
     assert found.forebody_load == pytest.approx(float(weight[front] @ force[front]), rel=1e-12)
     assert found.afterbody_load == pytest.approx(float(weight[~front] @ force[~front]), rel=1e-12)
     assert found.bearing_length == pytest.approx(float(weight[force > 0.0].sum()), rel=1e-12)
+
+
+def test_a_laws_search_begins_at_its_own_hardness_and_a_search_begins_where_a_straight_edge_bears_the_load() -> None:
+    """Linear snow: the same H_V and k_u under any straight edge, and never steeper than 1000."""
+    ski = plain_ski()
+    for angle in (0.0, 0.5, 1.2):
+        for ratio in (1.0, 10.0):
+            hardness, found = equivalent_snow(HypoplasticPoint(HARDNESS, ratio), ski, angle, 800.0)
+            assert (hardness, found) == pytest.approx((HARDNESS, ratio), rel=1e-6)
+        assert equivalent_snow(HypoplasticPoint(HARDNESS, 1e5), ski, angle, 800.0)[1] == 1000.0
+    # p = a ε² under an edge at 45°: F = a e³ L/3 over 0.9 of the running length; linear snow bears as much at e.
+    # Depths are tried that are 2.34 % apart; the first that bears is taken. Unloading is four times the chord.
+    law, ski = Power(4e10, 2.0, unloading_ratio=4.0), plain_ski()
+    depth = (3.0 * 800.0 / (4e10 * 0.9 * 1.6)) ** (1.0 / 3.0)
+    hardness, ratio = equivalent_snow(law, ski, math.radians(45.0), 800.0)
+    assert depth * 1.024 >= hardness / (2.0 / 3.0 * 4e10) >= depth
+    assert ratio == pytest.approx(4.0 * 1.5)  # the chord of p at e is a e, and linear snow has 2/3 of it
+
+
+def test_a_search_begins_on_a_base_no_wider_than_the_ski() -> None:
+    """p = a ε² at 60° and 16 cm: the wedge would reach 9 cm, the base half its width, r.
+
+    F = a (e³ - (e - r tan ϑ)³) L/(3 tan ϑ), the volume (e² - (e - r tan ϑ)²) L/(2 tan ϑ).
+    """
+    law, ski = Power(4e8, 2.0, unloading_ratio=4.0), plain_ski()
+    angle, deep = math.radians(60.0), 0.16
+    falls = 0.5 * float(ski.at(0.0).width) * math.tan(angle)
+    assert falls < deep
+
+    def force(depth: float) -> float:
+        return 4e8 * (depth**3 - (depth - falls) ** 3) * 0.9 * 1.6 / (3.0 * math.tan(angle))
+
+    def hardness(depth: float) -> float:
+        volume = (depth**2 - (depth - falls) ** 2) * 0.9 * 1.6 / (2.0 * math.tan(angle))
+        return force(depth) / volume
+
+    assert hardness(deep * 1.024) >= equivalent_snow(law, ski, angle, force(deep))[0] >= hardness(deep)
 
 
 def test_the_boots_own_station_is_neither_before_nor_behind() -> None:

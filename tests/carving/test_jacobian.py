@@ -182,7 +182,7 @@ def require_derivative(name: str, angle: float, hardness: float, ratio: float, b
     tiny = 1e-30
     moved = residual(model, given, across, u + 1j * tiny * v[0], border + 1j * tiny * v[1])
     right = moved.imag / tiny
-    numbers = core.CarveConditions(*given)
+    numbers = core.CarveConditions(*given[:-1])
     back, back_border = core.carve_solution(
         _core_ski(model), numbers, across, u, border, right[:-3].copy(), right[-3:].copy()
     )

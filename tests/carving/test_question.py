@@ -264,13 +264,11 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "methods" / "carved-turn.md").read_text("utf-8")
 CORE = ROOT / "src" / "core"
 SOURCES = [*sorted((CORE / "carve").glob("*.?pp")), CORE / "snow" / "hypoplastic.hpp"]
-UNUSED = {"strength", "divide", "points", "residual"}
-"""Marks of laws of the snow that the core can take and no carve gives it."""
 
 
 def test_marks() -> None:
     """In brackets, without links; in the sources they begin a remark."""
     marked = re.findall(r"^ *// \[([a-z ]+)\]", "\n".join(each.read_text("utf-8") for each in SOURCES), re.MULTILINE)
     named = re.findall(r"\[([a-z]+(?:, [a-z]+)*)\](?!\()", PAGE)
-    assert {name for group in named for name in group.split(", ")} == set(marked) - UNUSED
+    assert {name for group in named for name in group.split(", ")} == set(marked)
     assert {"hypoplastic", "strip", "balance"} <= set(marked)

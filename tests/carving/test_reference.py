@@ -16,8 +16,11 @@ from openbench.entries.numpy_reference.slow_carve import Case
 
 from skisnow.carving.equilibrium import carve, rest
 from skisnow.carving.result import Equilibrium
+from skisnow.forces.penetration import MeanPressurePoint, PointLaw, VolumeWithAnglePoint
+from skisnow.forces.shear import AngleShear, ShearLaw
 from skisnow.ski import Ski, read_ski
 
+from .laws import Deepening, Power
 from .synthetic import boot_pose, circular_sidecut, plain_ski, shovel, snow
 
 AGREE = 1e-3
@@ -26,15 +29,19 @@ AGREE = 1e-3
 
 def compare(case: Case) -> None:
     theirs = reference.solved(case)
-    ski = case.ski
+    ski, shear, penetration = case.ski, case.shear, case.penetration
     assert isinstance(ski, Ski)
+    assert shear is None or isinstance(shear, ShearLaw)
+    assert penetration is None or isinstance(penetration, PointLaw)
     ours = carve(
         ski,
         snow(case.hardness / 1e9),
         edge_angle=case.edge_angle,
         load=case.load,
         moment=case.moment,
-        unloading_ratio=case.unloading_ratio,
+        unloading_ratio=case.unloading_ratio if case.penetration is None else None,
+        shear=shear,
+        penetration=penetration,
         clamp_length=case.clamp_length,
         side_force_bending=case.side_force_bending,
         side_force_spread="base-reaction" if case.by_reaction else "depth",
@@ -105,12 +112,20 @@ CASES: dict[str, dict[str, Any]] = {
     "such a boot and a moment": {"boot_is_free": True, "moment": 40.0},
     "a side force that goes as the force on the base": {"by_reaction": True},
     "such a side force and such a boot": {"by_reaction": True, "boot_is_free": True},
+    # p = 2 A ε + B beyond the ramp, which bends where the groove does, too
+    "Federolf's law": {"hardness": 0.15e9, "penetration": MeanPressurePoint(0.034e9, 0.35e6, 10.0)},
+    "a pressure as the 0.6th power": {"penetration": Power(1e6 / 5e-3**0.6, 0.6, unloading_ratio=8.0)},
+    "a pressure as the 1.7th power": {"penetration": Power(1e6 / 5e-3**1.7, 1.7, unloading_ratio=8.0)},
+    "a hardness that grows with the edge angle": {"penetration": VolumeWithAnglePoint(0.2e9, 10.0)},
+    # where the ski twists, and where it is deeper, it draws as much more or less of the side force
+    "a strength by the angle": {"shear": AngleShear(0.35e6, 0.6)},
+    "a strength by the depth": {"shear": Deepening(0.1e6, 1e-3)},
 }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
-def test_other_snow_skis_and_boots(changes: dict[str, Any]) -> None:
+def test_other_snow_skis_boots_and_laws(changes: dict[str, Any]) -> None:
     compare(replace(base(), **changes))
 
 

@@ -61,10 +61,10 @@ def require_choices(groove: str, moment_balance: str, side_force_spread: str) ->
 
 
 def require_strength(snow: SnowProperties) -> None:
-    """Reject snow without S_f."""
+    """Reject snow without S_f if no law carries the side force."""
     if snow.failure_shear_stress is None:
         raise ParameterError(
-            "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one"
+            "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear law"
         ).tag("no_data", source=snow.source)
 
 

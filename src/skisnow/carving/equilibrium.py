@@ -11,19 +11,25 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
 
+from .._support.errors import ParameterError
 from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 from .checks import require_choices, require_kinds, require_ranges, require_strength, require_within, unloading_ratio_of
 from .edge_line import EdgeLine
+from .laws import SnowLaws, equivalent_snow, snow_laws
 from .outputs import CarveRequest
 from .result import Equilibrium, equilibrium_of, radius_at_boot
 from .sensitivity import CarveDerivatives
 from .solve import RIGID_PLASTIC, Conditions, Solution, solved
+
+if TYPE_CHECKING:
+    from ..forces.penetration import PointLaw
+    from ..forces.shear import ShearLaw
 
 GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
@@ -46,6 +52,8 @@ def carve(
     edge_angle: float,
     load: float,
     unloading_ratio: float | None = None,
+    shear: ShearLaw | None = None,
+    penetration: PointLaw | None = None,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
     footprint_stiffness: float | None = None,
@@ -69,6 +77,11 @@ def carve(
     unloading_ratio
         k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000). Where such steep unloading
         does not converge, 500, 300 or 200 is used, with a warning (default: that of the snow).
+    shear
+        A law of `skisnow.forces.shear`, or one of yours, instead of S_f; a law with a thrust is rejected.
+    penetration
+        A `PointLaw` of `skisnow.forces.penetration`, or your own, instead of H_V and k_u. A law that acts along the
+        base's normal carries the side force by its pressure's part across; it excludes S_f and a shear law.
     moment
         Moment at the boot, positive if it presses the tip down (N m), about the axis that `moment_balance` states.
     clamp_length, footprint_stiffness
@@ -101,8 +114,8 @@ def carve(
     Raises
     ------
     ParameterError
-        An argument is outside its range, or the snow has no S_f; or neither argument nor snow state
-        k_u/H_V.
+        An argument is outside its range, or the snow has no S_f; neither argument nor snow state k_u/H_V; an
+        object is not a law, or a law gives no finite answer.
 
     See Also
     --------
@@ -125,16 +138,19 @@ def carve(
     * The page docs/methods/carved-turn.md.
     """
     require_kinds(ski, snow)
-    ratio = unloading_ratio_of(snow, unloading_ratio)
+    ratio = _unloading_ratio(snow, unloading_ratio, penetration)
     require_ranges(edge_angle, load, ratio, moment)
     require_within(ski, load, moment)
     require_choices(groove, moment_balance, side_force_spread)
-    require_strength(snow)
+    laws = snow_laws(shear, penetration, edge_angle)
+    if laws is None or not (laws.shear is not None or laws.along_base_normal):
+        require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(
         ski, snow, edge_angle, load, moment, ratio, side_force_bending=side_force_bending, twist=twist,
         side_force_spread=side_force_spread, moment_balance=moment_balance,
     )  # fmt: skip
+    conditions = _with_laws(laws, ski, conditions)
     find = solved if groove == "edge" else _solve_with_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -144,7 +160,9 @@ def carve(
         conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
         solution = find(model, conditions)
         note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
-    exact = groove == "edge" and footprint_stiffness is None
+    if laws is not None and not solution.converged:
+        laws.require_finite()
+    exact = laws is None and groove == "edge" and footprint_stiffness is None
     other = partial(_other_radius, find, model, conditions, solution)
     return equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None, other=other)
 
@@ -167,7 +185,7 @@ def differentiable_carve(
     Arguments as in `carve`, `forms` being those of `_conditions`; `near`: a solution of nearly the same question, which
     is tried first.
     """
-    ratio = unloading_ratio_of(snow, unloading_ratio)
+    ratio = _unloading_ratio(snow, unloading_ratio, None)
     require_ranges(edge_angle, load, ratio, moment)
     require_strength(snow)
     model = clamped(ski, clamp_length, elements)
@@ -232,6 +250,24 @@ def rest(
     conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, side_force_bending=False, twist=twist)
     conditions = conditions._replace(side_force=0.0)
     return equilibrium_of(model, conditions, snow, solved(model, conditions))
+
+
+def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: object) -> float:
+    if penetration is None:
+        return unloading_ratio_of(snow, stated)
+    if stated is not None:
+        raise ParameterError(
+            "unloading_ratio is {given}, but a penetration law defines the unloading itself: remove unloading_ratio"
+        ).tag("contradiction", given=stated)
+    return 1.0
+
+
+def _with_laws(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
+    """The conditions with laws; a penetration law adds linear snow (H_V, k_u), from which the search begins."""
+    if laws is None or laws.penetration is None:
+        return conditions._replace(laws=laws)
+    hardness, ratio = equivalent_snow(laws.penetration, ski, conditions.edge_angle, conditions.load)
+    return conditions._replace(laws=laws, hardness=hardness, excess=hardness * (ratio - 1.0))
 
 
 def _conditions(

@@ -25,6 +25,8 @@ Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_co
 
 SINKING_DEPTH: Final = 0.30
 """Edge depth (m) beyond which a ski counts as swallowed: no balance above it (modelling assumption)."""
+NOTHING_TO_SPARE: Final = 1e-7
+"""Share of the side force that Newton's method leaves open where pressure along the base's normal just balances it."""
 LARGE_SLOPE: Final = 0.35
 """Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (modelling assumption: 6 % in
 the cosine)."""
@@ -62,7 +64,9 @@ class Equilibrium(Shown):
     remedy
         Recommended action.
     side_force, side_force_limit
-        Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N).
+        Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N). With a shear law S_f is its failure
+        stress there; with a penetration law along the base's normal the limit is the pressure's part across,
+        ∫ f tan(ϑ + φ) ds.
     holds
         Whether the limit is not exceeded.
     turn_radius_boot
@@ -233,8 +237,8 @@ def equilibrium_of(
 ) -> Equilibrium:
     """Outcome and numbers of a solution; `note` precedes its own warnings.
 
-    `elements`: those of the request; None where the equilibrium has no derivatives. `other`: computes the radius
-    with the other spread of side force.
+    `elements`: those of the request; None where the equilibrium has no derivatives. `other`: radius with the other
+    spread of side force, computed at once under laws from outside, which need not be picklable.
     """
     station = model.stations.station
     deepest = float(np.max(solution.edge_depth))
@@ -246,10 +250,8 @@ def equilibrium_of(
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
     below = depth > 0.0
-    stress = snow.failure_shear_stress
-    limit = None if stress is None else stress * float(weight @ np.maximum(depth, 0.0))
-    no_side_force = conditions.side_force == 0.0
-    holds = no_side_force if no_side_force or limit is None else conditions.side_force <= limit
+    limit = _side_force_limit(conditions, snow, solution, weight, conditions.edge_angle + line.bend[1])
+    holds = _edge_holds(conditions, limit)
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
     of_force = float(weight @ (force * station))
@@ -267,7 +269,7 @@ def equilibrium_of(
         side_force=conditions.side_force,
         side_force_limit=limit,
         turn_radius_boot=radius,
-        other_radius=other,
+        other_radius=other() if other is not None and conditions.laws is not None else other,
         turn_radius_chord=line.radius_over(*ends) if turns else None,
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
@@ -290,6 +292,24 @@ def equilibrium_of(
         else CarveRequest(model, conditions, snow.failure_shear_stress, solution, elements),
         median_radius=partial(line.radius_median, *ends) if turns else None,
     )
+
+
+def _side_force_limit(
+    conditions: Conditions, snow: SnowProperties, solution: Solution, weight: FloatArray, edge_angle: FloatArray
+) -> float | None:
+    """Largest side force of the edge (N): by the law if given, else S_f ∫ e ds."""
+    depth, stress = solution.edge_depth, snow.failure_shear_stress
+    if conditions.laws is not None and (conditions.laws.shear is not None or conditions.laws.along_base_normal):
+        return conditions.laws.side_force_limit(depth, solution.force_per_length, edge_angle, weight)
+    return None if stress is None else stress * float(weight @ np.maximum(depth, 0.0))
+
+
+def _edge_holds(conditions: Conditions, limit: float | None) -> bool:
+    if conditions.side_force == 0.0 or limit is None:
+        return conditions.side_force == 0.0
+    # a pressure along the base's normal holds a ski that does not twist with nothing to spare
+    rounding = NOTHING_TO_SPARE if conditions.laws is not None and conditions.laws.along_base_normal else 0.0
+    return conditions.side_force <= limit * (1.0 + rounding)
 
 
 def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:

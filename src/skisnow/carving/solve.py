@@ -12,8 +12,9 @@ from .._support.arrays import FloatArray
 from ..compiled import core
 from ..ski.beam import STATION_POINTS, ClampedSki, deflection_shape, element_places, twist_shape
 from ..ski.ski import Ski
+from .laws import STEEPEST_RATIO, SnowLaws
 
-RIGID_PLASTIC: Final = 1000.0
+RIGID_PLASTIC: Final = STEEPEST_RATIO
 """Unloading ratio that represents rigid-plastic snow: the groove springs back by a thousandth of its depth."""
 _CONFORMING_SHARE: Final = 0.9  # share of the running length that the first guess bends onto the snow
 _NEAR: Final = 1e-4  # m, over which the first guess takes the slope of the base
@@ -37,6 +38,7 @@ class Conditions(NamedTuple):
     pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
     pitch_of_shear: float  # share of the side force
     by_reaction: bool  # the side force goes along the edge as the snow's force, not as the depth
+    laws: SnowLaws | None = None  # replace the snow's numbers; with a penetration law the search begins at those
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +80,8 @@ def solved(
     if near is not None:
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
         from_there = (near.u, border)
-    result = core.find_carve(_core_ski(model), _core_conditions(conditions), offset, from_there, None)
+    laws = None if conditions.laws is None else conditions.laws.compiled
+    result = core.find_carve(_core_ski(model), _core_conditions(conditions), offset, from_there, laws)
     converged, iterations, u, (depth, slope, stress), edge_depth, force = result
     return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
 
@@ -98,7 +101,7 @@ def refined(
 
 def _core_conditions(conditions: Conditions) -> core.CarveConditions:
     # numbers of NumPy, too, which the core does not know
-    numbers: list[Any] = [number.item() if isinstance(number, np.generic) else number for number in conditions]
+    numbers: list[Any] = [number.item() if isinstance(number, np.generic) else number for number in conditions[:-1]]
     return core.CarveConditions(*numbers)
 
 

@@ -103,12 +103,20 @@ class PressureCallback:
         """Energy (J/m²) lost in the snow at places with these maximum depths (m)."""
         return self._require_finite(self.law.lost_energy(deepest), deepest.shape, deepest)
 
+    def refuse(self, reason: Message) -> None:
+        """Raise a ParameterError with the reason; called if the law returns a number that is not finite."""
+        raise ParameterError(reason).tag("invalid_law")
+
     def _require_finite(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
-        """The law's values in this shape; a value that is not finite is an error."""
+        """The law's values in this shape; `refuse` is called if one is not finite."""
         found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
         bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
         if bad.any():
-            raise ParameterError("{law!r} returns no finite value at a depth of {depth:.4g} mm").tag(
-                "invalid_law", law=self.law, depth=1e3 * depth[bad][0]
+            self.refuse(
+                Message(
+                    "{law!r} returns no finite value at a depth of {depth:.4g} mm",
+                    law=self.law,
+                    depth=1e3 * depth[bad][0],
+                )
             )
         return found
