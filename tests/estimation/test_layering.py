@@ -19,6 +19,7 @@ from skisnow.estimation.layering import layered, layering
 from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.estimation.screening import hardness_outliers, screened_penetration
 from skisnow.estimation.weather import weather_at_tests, weather_results
+from skisnow.interop.site_pit import site_pit
 from tests.present import present
 
 from .conftest import MakeCampaign
@@ -66,6 +67,7 @@ def test_conditions_at_the_time_of_each_experiment(make_campaign: MakeCampaign) 
     assert rows["p1"]["wind_speed_m_per_s"] is None
     assert [(row["site"], row["n"]) for row in section["sites"]] == [("A", 2), ("B", 1)]
     assert section["sites"][0]["air_temperature_C"] == pytest.approx(-8.0)
+    assert site_pit(analysis, "A").air_temperature_C == pytest.approx(-8.0)
     assert "s.smet" in analysis.campaign.file_hashes
     assert "3 of 5 experiments" in repr(analysis.weather)
 

@@ -15,6 +15,7 @@ from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile, SnowMicroPenSettings, snow_surface
 from skisnow.cli.shell import json_schema
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
+from skisnow.interop.site_pit import site_pit
 from skisnow.report.campaign.summary import summary
 from skisnow.snow.measured_range import PENETROMETER_RELATIONS
 
@@ -259,6 +260,8 @@ def test_samples_of_pits_alone_have_a_profile_and_a_strength_by_the_published_re
     assert "4 density samples, 2 sites<" in page  # nothing of plate tests, which there are none of
     assert page.index("figure-snow_profiles") < page.index("table-published_relations") < page.index('id="caveats"')
     assert "table-regressions" not in page and "table-marks" not in page
+    pit = site_pit(analysis, "A")
+    assert [(each.top, each.snow_density) for each in pit.densities] == [(0.3, 520.0), (0.1, 480.0)]
 
 
 @pytest.mark.parametrize("name", ["calonne-2020", "king-2020a"])

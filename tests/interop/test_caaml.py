@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow._support.errors import FieldDataError
+from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.campaign import Problem
 from skisnow.campaign.caaml import read_caaml
-from skisnow.campaign.snow_pit import DepthTemperature, SnowPit
+from skisnow.campaign.snow_pit import DepthTemperature, SnowLayer, SnowPit
+from skisnow.interop.caaml import caaml_text, write_caaml
+from tests.coded import Coded, coded, raises
 
-from .caaml_files import write_caaml
 from .pits import full_pit
 
 SNOWPILOT = """<?xml version="1.0" encoding="UTF-8"?>
@@ -103,6 +104,24 @@ def test_bombs_and_foreign_files_are_rejected(tmp_path: Path, content: str, word
     path.write_text(content, encoding="utf-8")
     with pytest.raises(FieldDataError, match=words):
         read_caaml(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"time": ""}, "missing"),
+        ({"time": "yesterday"}, coded("missing", time="yesterday")),
+        (
+            {"layers": (SnowLayer(0.0, hardness="very hard"),)},
+            coded("cannot_write", field="hand hardness", value="very hard"),
+        ),
+        ({"layers": (SnowLayer(0.0, grain_form="piste"),)}, coded("cannot_write", field="grain form", value="piste")),
+        ({"temperatures": (DepthTemperature(0.0, 1.5),)}, "cannot_write"),
+    ],
+)
+def test_what_the_standard_cannot_hold_is_rejected(changes: dict[str, object], words: str | Coded) -> None:
+    with raises(ParameterError, words):
+        caaml_text(replace(full_pit(), **changes))  # type: ignore[arg-type]
 
 
 def test_control_characters_do_not_spoil_the_file(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tests.interop.caaml_files import write_caaml
+from skisnow.interop.caaml import write_caaml
 
 from ..interop.pits import full_pit
 

@@ -13,12 +13,17 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     """Add ``skisnow convert`` to the program."""
     parser = commands.add_parser(
         "convert",
-        help="files between formats: SnowMicroPen, OpenSim, markers",
-        description="Read IN and write OUT in the format that its ending tells: a recording of a SnowMicroPen (.pnt) "
-        "as layers of a run (.csv), .mot and .sto as each other, markers (.trc, .c3d) as .trc.",
+        help="files between formats: CAAML, SnowMicroPen, OpenSim",
+        description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML (.caaml, .xml) or a recording of a "
+        "SnowMicroPen (.pnt), and write OUT as CAAML 6.0.3 (.caaml, .xml). A recording also becomes layers of a run "
+        "(.csv), .mot and .sto become each other, markers (.trc, .c3d) become .trc.",
     )
     parser.add_argument("source", type=Path, metavar="IN", help="what is read")
     parser.add_argument("target", type=Path, metavar="OUT", help="what is written")
+    parser.add_argument("--site", metavar="S", help="the site of a campaign, where it has several")
+    parser.add_argument(
+        "--time", metavar="TIME", help="day or time such as 2026-11-23T09:10, if IN has no time: CAAML requires one"
+    )
     parser.add_argument(
         "--layers-to-mm",
         type=whole_number(1, 98),
@@ -35,6 +40,8 @@ def convert_file(options: argparse.Namespace) -> int:
 
     depth = options.layers_to_mm
     convert_options = ConvertOptions(
+        site=options.site,
+        time=options.time,
         layers_to=None if depth is None else depth * MM,
         report=lambda text: print(f"note: {text}", file=sys.stderr),
     )

@@ -6,7 +6,7 @@ A further conversion is one more entry in `CONVERSIONS`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -17,37 +17,50 @@ from .._support.messages import Message, joined
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import write_file
 from .._support.units import MM
-from ..campaign import read_snow_micro_pen
+from ..campaign import read_campaign, read_snow_micro_pen
+from ..campaign.caaml import read_caaml
 from ..campaign.snow_micro_pen import SnowMicroPenSettings, snow_surface
+from ..campaign.snow_pit import ForceProfile, SnowPit
 from ..parameters import suggest_and_list
+from .caaml import write_caaml
 from .opensim import read_c3d, read_motion, read_trc, write_motion, write_trc
+from .site_pit import site_pit, sites_of
 
+CAMPAIGN: Final = "campaign"
 CSV: Final = "CSV"
 ENDINGS: Final[Mapping[str, str]] = {
+    ".caaml": "CAAML",
+    ".xml": "CAAML",
     ".pnt": "SnowMicroPen",
     ".csv": CSV,
+    ".xlsx": CAMPAIGN,
+    ".xlsm": CAMPAIGN,
     ".mot": "OpenSim table",
     ".sto": "OpenSim table",
     ".trc": "TRC markers",
     ".c3d": "C3D markers",
 }
-"""Kind of a file by its ending."""
+"""Kind of a file by its ending; a folder is a campaign."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConvertOptions:
     """Values that the formats do not contain.
 
+    site: site of a campaign; None if it has a single one.
+    time: ISO 8601, if the source does not state it.
     layers_to: depth (m) to which a recording becomes layers of a run (``snow.layers_file``).
     report: called with each note about the source, such as the points of a .c3d file that were omitted.
     """
 
+    site: str | None = None
+    time: str | None = None
     layers_to: float | None = None
     report: Callable[[str], None] | None = None
 
 
 def convert(source: str | Path, target: str | Path, options: ConvertOptions | None = None) -> None:
-    """Read one file and write another; the kinds follow from the endings.
+    """Read one file or campaign and write another; the kinds follow from the endings.
 
     Raises ParameterError: the conversion is unknown (the message lists the known ones), or the target's format requires
         data that the source does not contain.
@@ -77,11 +90,40 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
 
 
 def _kind_of_file(path: Path) -> str:
+    if path.is_dir():
+        return CAMPAIGN
     ending = path.suffix.lower()
     if ending not in ENDINGS:
-        problem = Message("the ending of {path} states no format.", path=path)
+        problem = Message("the ending of {path} states no format; a folder is a campaign.", path=path)
         raise ParameterError(joined([problem, suggest_and_list(ending, ENDINGS)])).tag("wrong_ending")
     return ENDINGS[ending]
+
+
+def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
+    from ..estimation.analysis import FEWEST_RESAMPLES, analyse
+
+    campaign = read_campaign(source)
+    sites = sites_of(campaign)
+    if options.site is None and len(sites) != 1:
+        raise ParameterError("{source} has {n_sites} sites; name one with --site: {sites}").tag(
+            "missing", source=source, n_sites=len(sites), sites=list(sites)
+        )
+    site = sites[0] if options.site is None else options.site
+    return site_pit(analyse(campaign, n_resamples=FEWEST_RESAMPLES), site)  # no bootstrap is in a mean's interval
+
+
+def _pit_of_recording(source: Path) -> SnowPit:
+    profile = read_snow_micro_pen(source)
+    day = profile.recorded_on
+    return SnowPit(
+        name=profile.name or source.stem,
+        time="" if day is None else day.isoformat(),
+        comment=profile.comment,
+        latitude_deg=profile.latitude_deg,
+        longitude_deg=profile.longitude_deg,
+        elevation=profile.height,
+        forces=(ForceProfile("SnowMicroPen", profile.depth, profile.force.clip(min=0.0)),),
+    )
 
 
 def _recording_as_layers(source: Path, target: Path, options: ConvertOptions) -> None:
@@ -103,6 +145,14 @@ def _recording_as_layers(source: Path, target: Path, options: ConvertOptions) ->
     write_file(target, csv_text((("depth_mm", "force_N"), *rows)))
 
 
+def _to_caaml(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
+    def made(source: Path, target: Path, options: ConvertOptions) -> None:
+        pit = read(source, options)
+        write_caaml(replace(pit, time=pit.time or options.time or ""), target)
+
+    return made
+
+
 def _c3d_as_trc(source: Path, target: Path, options: ConvertOptions) -> None:
     markers = read_c3d(source)
     if markers.omitted and options.report is not None:
@@ -115,6 +165,9 @@ Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], None]
 """Reads the source and writes the target."""
 
 CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
+    (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),
+    ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
+    ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
     ("SnowMicroPen", CSV): _recording_as_layers,
     ("OpenSim table", "OpenSim table"): lambda source, target, _: write_motion(read_motion(source), target),
     ("TRC markers", "TRC markers"): lambda source, target, _: write_trc(read_trc(source), target),

@@ -14,6 +14,8 @@ from .._support.errors import OutputError
 from .._support.staging import require_writable, staged, write_file
 from .._support.units import DEGREE, STANDARD_GRAVITY
 from ..campaign import write_reference
+from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
+from ..interop.caaml import caaml_text
 from ..scenario import Plane, load_scenario
 from ..simulation.simulated_run import simulate
 from ..track.projection import GeodeticPoint, earth_centred, geodetic
@@ -106,8 +108,29 @@ _HEADER_BYTES: Final = 512
 
 def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
     """Name and content of each snow sample."""
+    yield "pit.caaml", caaml_text(sample_pit())
     yield "weather.smet", weather_smet(random)
     yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
+
+
+def sample_pit() -> SnowPit:
+    """Pit of a groomed piste, with layers, densities and temperatures."""
+    return SnowPit(
+        name="synthetic pit",
+        time="2026-02-03T09:10:00+01:00",
+        comment="synthetic",
+        country="AT",
+        latitude_deg=ORIGIN.latitude_deg,
+        longitude_deg=ORIGIN.longitude_deg,
+        elevation=ORIGIN.height,
+        aspect="SE",
+        slope_angle_deg=12.0,
+        snow_height=1.25,
+        air_temperature_C=-4.5,
+        layers=(SnowLayer(0.0, 0.12, "K-", "MFpc", 0.75e-3), SnowLayer(0.12, 0.3, "P+", "RGsr", 0.5e-3)),
+        densities=(LayerDensity(0.0, 512.5, 0.1), LayerDensity(0.2, 430.0, 0.1)),
+        temperatures=(DepthTemperature(0.0, -7.25), DepthTemperature(0.1, -5.5), DepthTemperature(0.4, -3.0)),
+    )
 
 
 def weather_smet(random: np.random.Generator) -> str:

@@ -19,8 +19,8 @@ from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
 from skisnow.campaign.templates import workbook_bytes
 from skisnow.cli import campaign
+from skisnow.interop.caaml import write_caaml
 from tests.campaign.recordings import built
-from tests.interop.caaml_files import write_caaml
 from tests.interop.pits import full_pit
 
 from ..archives import archive

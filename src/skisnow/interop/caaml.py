@@ -8,11 +8,23 @@ from pathlib import Path
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
-from skisnow._support.units import CM, MM
-from skisnow.campaign.caaml import OWN_NAMESPACE
-from skisnow.campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+from .._support.errors import ParameterError
+from .._support.staging import write_file
+from .._support.units import CM, MM
+from ..campaign.caaml import OWN_NAMESPACE
+from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
 
 VERSION: Final = "6.0.3"
+HAND_HARDNESSES: Final = (
+    "F-", "F", "F+", "F-4F", "4F-", "4F", "4F+", "4F-1F", "1F-", "1F", "1F+", "1F-P", "P-", "P", "P+", "P-K",
+    "K-", "K", "K+", "K-I", "I",
+)  # fmt: skip
+_GRAINS: Final = """
+    PP PPco PPnd PPpl PPsd PPir PPgp PPhl PPip PPrm MM MMrp MMci DF DFdc DFbk RG RGsr RGlr RGwp RGxf FC FCso FCsf FCxr
+    DH DHcp DHpr DHch DHla DHxr SH SHsu SHcv SHxr MF MFcl MFpc MFsl MFcr IF IFil IFic IFbi IFrc IFsc
+"""
+GRAIN_FORMS: Final = frozenset(_GRAINS.split())
+"""Codes that the standard lists; others cannot be written in it."""
 METHODS: Final = ("SnowMicroPen", "Ram Sonde", "Push-Pull Gauge", "other")
 _NAMES: Final = (
     f'xmlns:caaml="http://caaml.org/Schemas/SnowProfileIACS/v{VERSION}" xmlns:gml="http://www.opengis.net/gml" '
@@ -20,10 +32,20 @@ _NAMES: Final = (
 )
 _CONTROL: Final = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML does not allow."""
+_TIME: Final = re.compile(r"\d{4}-\d\d-\d\d(T\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:\d\d)?)?")
 
 
 def write_caaml(pit: SnowPit, path: str | Path) -> Path:
-    Path(path).write_text(caaml_text(pit), encoding="utf-8")
+    """Write a snow pit as CAAML 6.0.3.
+
+    Returns: the file.
+    Raises ParameterError: the pit has no time, which CAAML demands, a snow temperature above 0 °C, or a code that CAAML
+        does not have.
+    Raises OutputError: the file cannot be written.
+
+    See the page docs/files/campaign.md.
+    """
+    write_file(path, caaml_text(pit))
     return Path(path)
 
 
@@ -96,6 +118,7 @@ def _layer_xml(layer: SnowLayer) -> str:
     parts = [_nested("metaData", _element_xml("comment", layer.comment)) if layer.comment else ""]
     parts.append(_extent(layer))
     if layer.grain_form:
+        _require_choice("grain form", layer.grain_form, GRAIN_FORMS)
         parts.append(_element_xml("grainFormPrimary", layer.grain_form))
     if layer.grain_size is not None:
         average = _nested("Components", _element_xml("avg", _number(layer.grain_size / MM)))
@@ -103,11 +126,16 @@ def _layer_xml(layer: SnowLayer) -> str:
     names = ("hardnessTop", "hardnessBottom") if layer.hardness_bottom else ("hardness",)
     for name, hardness in zip(names, (layer.hardness, layer.hardness_bottom), strict=False):
         if hardness:
+            _require_choice("hand hardness", hardness, HAND_HARDNESSES)
             parts.append(_element_xml(name, hardness, uom=""))
     return _nested("Layer", "".join(parts))
 
 
 def _temperature_xml(observed: DepthTemperature) -> str:
+    if observed.temperature_C > 0.0:
+        raise ParameterError("snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C").tag(
+            "cannot_write", temperature_c=observed.temperature_C
+        )
     temperature = _element_xml("snowTemp", _number(observed.temperature_C), uom="degC")
     return _nested("Obs", _cm_xml("depth", observed.depth) + temperature)
 
@@ -160,5 +188,17 @@ def _number(value: float) -> str:
     return f"{value:.12g}"
 
 
+def _require_choice(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise ParameterError("{field}: {value!r} cannot be written: CAAML allows {allowed}").tag(
+            "cannot_write", field=what, value=value, allowed=sorted(allowed)
+        )
+
+
 def _timestamp(time: str) -> str:
+    if not _TIME.fullmatch(time):
+        raise ParameterError(
+            "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10; the pit has {time!r}: give it "
+            "with --time"
+        ).tag("missing", time=time)
     return f"{time}:00" if re.fullmatch(r"[^T]+T\d\d:\d\d", time) else time
