@@ -194,3 +194,8 @@ def test_a_sample_with_a_thickness_goes_from_its_top_down(campaign: Path, tmp_pa
         assert [(layer.top, layer.thickness) for layer in pit.densities] == expected
         assert ("sample's middle" in pit.comment) is is_assumed
         assert "Densities without a depth" not in pit.comment
+
+
+def test_a_campaign_becomes_netcdf(campaign: Path, tmp_path: Path) -> None:
+    assert main(["convert", str(campaign), str(tmp_path / "out.nc")]) == 0
+    assert (tmp_path / "out.nc").read_bytes()[:4] == b"CDF\x02"

@@ -13,10 +13,11 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     """Add ``skisnow convert`` to the program."""
     parser = commands.add_parser(
         "convert",
-        help="files between formats: CAAML, SnowMicroPen, OpenSim",
+        help="files between formats: CAAML, NetCDF, SnowMicroPen, OpenSim",
         description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML (.caaml, .xml) or a recording of a "
-        "SnowMicroPen (.pnt), and write OUT as CAAML 6.0.3 (.caaml, .xml). A recording also becomes layers of a run "
-        "(.csv), .mot and .sto become each other, markers (.trc, .c3d) become .trc.",
+        "SnowMicroPen (.pnt), and write OUT as CAAML 6.0.3 (.caaml, .xml). A campaign also becomes NetCDF (.nc) "
+        "with its readings, a recording layers of a run (.csv). .mot and .sto become each other, markers (.trc, .c3d) "
+        "become .trc.",
     )
     parser.add_argument("source", type=Path, metavar="IN", help="what is read")
     parser.add_argument("target", type=Path, metavar="OUT", help="what is written")

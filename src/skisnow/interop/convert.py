@@ -23,11 +23,13 @@ from ..campaign.snow_micro_pen import SnowMicroPenSettings, snow_surface
 from ..campaign.snow_pit import ForceProfile, SnowPit
 from ..parameters import suggest_and_list
 from .caaml import write_caaml
+from .campaign_netcdf import write_campaign_netcdf
 from .opensim import read_c3d, read_motion, read_trc, write_motion, write_trc
 from .site_pit import site_pit, sites_of
 
 CAMPAIGN: Final = "campaign"
 CSV: Final = "CSV"
+NETCDF: Final = "NetCDF"
 ENDINGS: Final[Mapping[str, str]] = {
     ".caaml": "CAAML",
     ".xml": "CAAML",
@@ -39,6 +41,7 @@ ENDINGS: Final[Mapping[str, str]] = {
     ".sto": "OpenSim table",
     ".trc": "TRC markers",
     ".c3d": "C3D markers",
+    ".nc": NETCDF,
 }
 """Kind of a file by its ending; a folder is a campaign."""
 
@@ -166,6 +169,7 @@ Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], None]
 
 CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),
+    (CAMPAIGN, NETCDF): lambda source, target, _: write_campaign_netcdf(read_campaign(source), target),
     ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
     ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
     ("SnowMicroPen", CSV): _recording_as_layers,
