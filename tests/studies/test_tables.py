@@ -1,5 +1,6 @@
 """A study's table that a spreadsheet program saved again."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from skisnow._support.errors import OutputError, ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.studies import Study, StudyState, read_study, read_table, run_study, study_state
+from skisnow.studies.run import kept_rows
 from tests.coded import Coded, coded, raises
 
 PLAIN = """\
@@ -134,3 +136,10 @@ def test_a_run_that_another_overtook_computes_nothing(study: Study, monkeypatch:
     monkeypatch.setattr(KeptRows, "opened", late)
     with raises(OutputError, "in_use"):
         run_study(study, workers=1)
+
+
+def test_kept_rows_of_a_study_say_what_it_is(study: Study) -> None:
+    kept = kept_rows(study, study.partial, study.fingerprint())
+    assert json.loads(kept.about()["columns"]) == [*study.columns[:-1]]
+    assert (kept.about()["points"], json.loads(kept.about()["kinds"])["load_N"]) == ("12", "number")
+    kept.remove()

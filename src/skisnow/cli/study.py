@@ -12,6 +12,8 @@ from .options import add_language, add_workers
 from .output import Progress, ending_is_an_interrupt, prepare_figure, report_interrupt
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..studies import Study, StudyTable
 
 
@@ -22,21 +24,38 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="carved turns or simulated runs over a grid or a sample of inputs, as one table",
         description="Run a study. Its table goes where STUDY.toml says; an interrupted one goes on when started again.",
     )
-    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="with the varied and fixed inputs and `out`")
+    about = "with the varied and fixed inputs and `out`; with --merge the parts"
+    parser.add_argument("study", type=Path, nargs="+", metavar="STUDY.toml", help=about)
     add_workers(parser)
+    parts = parser.add_mutually_exclusive_group()
+    shard = "compute one of n parts, for the jobs of an array: every n-th point, into a file beside the table"
+    parts.add_argument("--shard", metavar="i/n", help=shard)
+    merge = "put parts together to this table: skisnow study --merge TABLE PART PART …"
+    parts.add_argument("--merge", type=Path, metavar="TABLE", help=merge)
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
     add_language(parser, "the map")
     about = "radius over edge angle, or where the edge loses grip; default: radius"
     parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, parser=parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run or resume the study; returns 1 if no point could be computed."""
+    """Run, resume or combine the study; returns 1 if no point could be computed."""
+    if options.merge is not None:
+        return _merge_shards(options)
+    if len(options.study) > 1:
+        options.parser.error("one STUDY.toml is taken; several files are the parts of --merge TABLE")
+    (file,) = options.study
     prepare_figure(options.figure)
-    from ..studies import read_study, run_study
+    from ..studies import read_study
 
-    study = read_study(options.study)
+    study = read_study(file)
+    return _run_whole(options, study) if options.shard is None else _run_part(options, study)
+
+
+def _run_whole(options: argparse.Namespace, study: Study) -> int:
+    from ..studies import run_study
+
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
         raise ParameterError("--figure draws maps of carved turns; remove it for simulated runs and use the table").tag(
             "not_supported"
@@ -44,20 +63,51 @@ def run(options: argparse.Namespace) -> int:
     _print_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            table = run_study(
-                study,
-                workers=options.workers,
-                progress=lambda done, total: progress(f"{done} of {total} points"),
-            )
+            table = run_study(study, workers=options.workers, progress=_print_points(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, study.partial)
     _print_outcomes(study.out, table)
-    if table.tally().failed == len(table.rows):
-        print(f"skisnow: not one point could be asked; {study.out} was not written.", file=sys.stderr)
+    if _all_points_failed(study.out, table):
         return 1
     if options.figure is not None:
         _draw_figure(options, table)
     return 0
+
+
+def _run_part(options: argparse.Namespace, study: Study) -> int:
+    from ..studies import Shard, run_shard
+
+    if options.figure is not None:
+        raise ParameterError("--figure needs the whole table; draw it when the parts are put together").tag("missing")
+    shard = Shard.of(options.shard)
+    try:
+        with ending_is_an_interrupt(), Progress() as progress:
+            place = run_shard(study, shard, workers=options.workers, progress=_print_points(progress))
+    except KeyboardInterrupt as stopped:
+        return report_interrupt(stopped, shard.place(study))
+    print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
+    return 0
+
+
+def _print_points(progress: Progress) -> Callable[[int, int], None]:
+    return lambda done, total: progress(f"{done} of {total} points")
+
+
+def _merge_shards(options: argparse.Namespace) -> int:
+    from ..studies import merge_shards
+
+    if options.figure is not None:
+        options.parser.error("--merge computes nothing: it takes a table and the files that --shard left, and no more")
+    table = merge_shards(options.merge, options.study)
+    _print_outcomes(options.merge, table)
+    return 1 if _all_points_failed(options.merge, table) else 0
+
+
+def _all_points_failed(place: Path, table: StudyTable) -> bool:
+    if table.tally().failed < len(table.rows):
+        return False
+    print(f"skisnow: not one point could be asked; {place} was not written.", file=sys.stderr)
+    return True
 
 
 def _print_state(study: Study) -> None:

@@ -1,9 +1,11 @@
 """Studies: one question over a grid or a sample of its inputs, in parallel and resumable, as one table."""
 
 from .run import StudyState, run_study, study_state
+from .shards import Shard, merge_shards, run_shard
 from .study import Study, read_study
 from .table import StudyTable, read_table
 
 __all__ = [
-    "Study", "StudyState", "StudyTable", "read_study", "read_table", "run_study", "study_state",
+    "Shard", "Study", "StudyState", "StudyTable", "merge_shards", "read_study", "read_table", "run_shard", "run_study",
+    "study_state",
 ]  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -9,8 +10,9 @@ from typing import Any, Self
 
 from .._support.errors import OutputError, ParameterError
 from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, worker_count
-from .._support.processes.kept_rows import KeptRows
+from .._support.processes.kept_rows import KeptRows, json_text
 from .._support.staging import cannot_write, write_file
+from ..parameters import Quantity
 from .points import Point
 from .study import Study, StudyModel, read_study
 from .table import StudyTable, read_table
@@ -29,21 +31,25 @@ def study_state(study: Study) -> StudyState:
 
     Raises ParameterError: a file that is not a study's table has its name: it is not replaced.
     """
-    return _table_state(study, study.fingerprint())[0] if study.out.exists() else StudyState.NEW
-
-
-def _table_state(study: Study, fingerprint: str) -> tuple[StudyState, StudyTable | None]:
-    """State of the file at the path of a study's table, and the table where it is one."""
     if not study.out.exists():
+        return StudyState.NEW
+    return table_state(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
+
+
+def table_state(
+    out: Path, keys: Mapping[str, Quantity], fingerprint: str, points: int
+) -> tuple[StudyState, StudyTable | None]:
+    """State of the file at the path of a table, and the table where it is one."""
+    if not out.exists():
         return StudyState.NEW, None
     try:
-        table = read_table(study.out, study.subject.keys)
+        table = read_table(out, keys)
     except ParameterError as error:
         raise ParameterError("{problem}. It is not replaced: name another place in out, or move it away").tag(
             "wrong_kind", problem=error
         ) from error
     tally = table.tally()
-    same = tally.rows == len(study.points) and tally.studies == {fingerprint}
+    same = tally.rows == points and tally.studies == {fingerprint}
     return (StudyState.FINISHED if same else StudyState.ANOTHER), table
 
 
@@ -97,12 +103,12 @@ def run_study(
     study = study if isinstance(study, Study) else read_study(study)
     fingerprint = study.fingerprint()
     before = _stamp(study.out)
-    state, table = _table_state(study, fingerprint)
+    state, table = table_state(study.out, study.subject.keys, fingerprint, len(study.points))
     if state is StudyState.FINISHED and table is not None:
         if study.partial.exists():  # a kill between writing the one and removing the other
-            KeptRows.opened(study.partial, fingerprint).remove()
+            kept_rows(study, study.partial, fingerprint).remove()
         return replace(table, varied=study.varied)
-    finished_rows = KeptRows.opened(study.partial, fingerprint)
+    finished_rows = kept_rows(study, study.partial, fingerprint)
     try:
         if _stamp(study.out) != before:
             raise OutputError("{out} was just written by another run. Start again to see its table").tag(
@@ -110,25 +116,41 @@ def run_study(
             )
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
-        finished = (dict(zip(study.columns, (*values, fingerprint), strict=True)) for _, values in finished_rows.rows())
-        study_table = StudyTable(study.columns, list(finished), study.varied)
-        if study_table.answers():  # the table is not written if no point could be computed
-            _write_table(study, study_table, moved=state is StudyState.ANOTHER)
+        previous = study.place_for_previous() if state is StudyState.ANOTHER else None
+        study_table = write_rows(study.out, study.columns, finished_rows.rows(), fingerprint, previous=previous)
         finished_rows.remove()
     finally:
         finished_rows.close()
-    return study_table
+    return replace(study_table, varied=study.varied)
 
 
-def _write_table(study: Study, table: StudyTable, *, moved: bool) -> None:
-    """Write a table; `moved`: that of another study is in its place, which is moved away."""
-    if moved:
-        previous = study.place_for_previous()
-        try:
-            study.out.rename(previous)
-        except OSError as error:
-            raise cannot_write(previous, error) from error
-    write_file(study.out, table.csv())
+def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptRows:
+    """Open or create the file of a study's finished points; `about`: further entries that the file stores."""
+    kinds = json_text({name: key.kind for name, key in study.subject.keys.items()})
+    columns = json_text(study.columns[:-1])
+    about = {"points": str(len(study.points)), "kinds": kinds, "columns": columns, **about}
+    return KeptRows.opened(path, fingerprint, about=about)
+
+
+def write_rows(
+    out: Path, columns: Sequence[str], finished: Iterable[tuple[int, Any]], fingerprint: str, *, previous: Path | None
+) -> StudyTable:
+    """Write the table of all rows and return it; it is not written if no point could be computed.
+
+    columns: columns of the table, the last one for the fingerprint.
+    finished: number of each point, and the values of its row without the fingerprint.
+    previous: where a table in its place goes; None: no table is there.
+    """
+    rows = [dict(zip(columns, (*values, fingerprint), strict=True)) for _, values in finished]
+    table = StudyTable(tuple(columns), rows, ())
+    if table.answers():
+        if previous is not None:
+            try:
+                out.rename(previous)
+            except OSError as error:
+                raise cannot_write(previous, error) from error
+        write_file(out, table.csv())
+    return table
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:

@@ -102,11 +102,7 @@ class Study(Shown):
 
     def place_for_previous(self) -> Path:
         """Free path to which another study's table is moved, if it is at the path of this one's table."""
-        place, count = self.out.with_name(f"{self.out.stem}.previous{self.out.suffix}"), 1
-        while place.exists():
-            count += 1
-            place = self.out.with_name(f"{self.out.stem}.previous-{count}{self.out.suffix}")
-        return place
+        return place_for_previous(self.out)
 
     def fingerprint(self) -> str:
         """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""
@@ -116,6 +112,15 @@ class Study(Shown):
         for path in self.subject.files(self.points):
             digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]
+
+
+def place_for_previous(out: Path) -> Path:
+    """Free path in the same folder to which another study's table at `out` is moved."""
+    place, count = out.with_name(f"{out.stem}.previous{out.suffix}"), 1
+    while place.exists():
+        count += 1
+        place = out.with_name(f"{out.stem}.previous-{count}{out.suffix}")
+    return place
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,6 +263,11 @@ def _table_path(path: Path, values: Mapping[str, Any]) -> Path:
         raise ParameterError('out is {out!r}; it is the place of the table, such as out = "table.csv"').tag(
             "wrong_kind", out=out
         )
-    if Path(out).suffix.lower() != ".csv":
-        raise ParameterError("out is {out!r}; the name of the table must end in .csv").tag("wrong_ending", out=out)
+    require_csv(out)
     return path.parent / out
+
+
+def require_csv(out: str | Path) -> None:
+    """Raise a ParameterError for the name of a table that does not end in .csv."""
+    if Path(out).suffix.lower() != ".csv":
+        raise ParameterError("out is {out!r}; the name of the table must end in .csv").tag("wrong_ending", out=str(out))

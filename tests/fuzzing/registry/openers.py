@@ -37,7 +37,6 @@ NO_READERS: Final[Mapping[str, str]] = {
     "identification.result:identification_dict": "bytes for a SHA-256",
     "identification.data:_require_different": "bytes for a SHA-256",
     "simulation.run_summary:_provenance_json": "bytes for a SHA-256",
-    "studies.run:_file_hash": "bytes for a SHA-256",
     "studies.study:Study.fingerprint": "bytes for a SHA-256",
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
     "campaign.store.export:_add_later_files": "a file of the campaign that it has just exported",

@@ -1,16 +1,15 @@
 """Readers of studies: STUDY.toml, tables, and the databases of finished points."""
 
 import sqlite3
+from collections.abc import Callable
 from contextlib import closing
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from skisnow import read_study
-from skisnow._support.processes.kept_rows import KeptRows, json_text
 from skisnow.design import Measured, measured_ski, read_design
-from skisnow.studies import read_table, run_study
-from skisnow.studies.run import StudyRows
+from skisnow.studies import merge_shards, read_table, run_shard, run_study
 
 from ..databases import SQLITE
 from ..reader import Files, Reader, single_file
@@ -41,18 +40,33 @@ def _computed(out: str) -> Files:
 
 
 @cache
-def _partial() -> Files:
-    """The finished points of a study that was stopped before its last one."""
+def _parts() -> Files:
     with TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "study.toml").write_text(_STUDY % "table.csv")
-        study = read_study(folder / "study.toml")
-        kept, rows = KeptRows.opened(study.partial, study.fingerprint()), StudyRows.of(study)
-        kept.add((number, json_text(rows(study.points[number]))) for number in range(5))
-        kept.close()
-        with closing(sqlite3.connect(study.partial)) as database:
-            database.execute("pragma journal_mode = delete")
-        return {"table.csv.partial": study.partial.read_bytes(), "study.toml": (_STUDY % "table.csv").encode()}
+        for number in (1, 2):
+            run_shard(folder / "study.toml", f"{number}/2", workers=1)
+        return {each.name: _one_file(each) for each in sorted(folder.glob("*shard-?-of-2"))}
+
+
+def _one_file(place: Path) -> bytes:
+    with closing(sqlite3.connect(place)) as database:
+        database.execute("pragma journal_mode = delete")
+    return place.read_bytes()
+
+
+@cache
+def _partial() -> Files:
+    """Both parts in one file, as a study that was stopped before its last point leaves it."""
+    one, other = _parts().values()
+    with TemporaryDirectory() as name:
+        place, beside = Path(name) / "one", Path(name) / "other"
+        place.write_bytes(one)
+        beside.write_bytes(other)
+        with closing(sqlite3.connect(place, isolation_level=None)) as database:
+            database.execute("attach ? as other", (str(beside),))
+            database.execute("insert into rows select * from other.rows")
+        return {"table.csv.partial": _one_file(place), "study.toml": (_STUDY % "table.csv").encode()}
 
 
 def _read_back(folder: Path, out: str) -> object:
@@ -65,11 +79,19 @@ def _gone_on_with(folder: Path) -> object:
     return run_study(read_study(folder / "study.toml"), workers=1).counts()
 
 
+def _merged(folder: Path) -> object:
+    return merge_shards(folder / "merged.csv", sorted(folder.glob("*shard-?-of-2"))).counts()
+
+
 def _table(out: str, mutations: tuple[Mutation, ...], *covers: str) -> Reader:
     return Reader(
         name=f"study {out}", target=out, files=lambda: _computed(out), read=lambda folder: _read_back(folder, out),
         mutations=mutations, covers=covers,
     )  # fmt: skip
+
+
+def _rows(name: str, target: str, files: Callable[[], Files], read: Callable[[Path], object], *covers: str) -> Reader:
+    return Reader(name=name, target=target, files=files, read=read, mutations=SQLITE, covers=covers)
 
 
 _DESIGN = """ski = "slalom"
@@ -115,8 +137,7 @@ READERS = (
         "studies.study:read_study",
     ),
     _table("table.csv", TABLE, "studies.table:read_table"),
-    Reader(
-        name="study .partial", target="table.csv.partial", files=_partial, read=_gone_on_with, mutations=SQLITE,
-        covers=("_support.processes.kept_rows:KeptRows.__init__",),
-    ),
+    _rows("study .partial", "table.csv.partial", _partial, _gone_on_with,
+          "_support.processes.kept_rows:KeptRows.__init__"),
+    _rows("study shard", "table.csv.shard-1-of-2", _parts, _merged, "_support.processes.kept_rows:KeptRows.__init__"),
 )  # fmt: skip

@@ -90,26 +90,31 @@ def compute_missing(
     function: PointFunction,
     kept: KeptRows,
     *,
+    numbers: range | None = None,
     workers: int | None = None,
     executor: ExecutorLike | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Compute the missing rows of points and add them to `kept`; memory does not grow with their number."""
+    """Compute the missing rows of points and add them to `kept`; memory does not grow with their number.
+
+    numbers: numbers of the requested points; None: all.
+    """
     wanted = worker_count(workers)
+    numbers = range(len(points)) if numbers is None else numbers
     finished = bytearray(len(points))
     for number in kept.numbers():
         if 0 <= number < len(finished):
             finished[number] = True
-    done = sum(finished)
-    missing = len(points) - done
+    done = sum(finished[numbers.start : numbers.stop : numbers.step])
+    missing = len(numbers) - done
     tell = progress or (lambda *_: None)
-    tell(done, len(points))
+    tell(done, len(numbers))
     advice = Message("Finished points are kept. Start again, with fewer workers.")
-    unfinished = ((number, points[number]) for number in range(len(points)) if not finished[number])
+    unfinished = ((number, points[number]) for number in numbers if not finished[number])
     with Pool(function, max(1, min(wanted, missing)), advice=advice, executor=executor) as pool:
         for rows in pool.rows(unfinished, missing):
             done += kept.add(rows)
-            tell(done, len(points))
+            tell(done, len(numbers))
 
 
 class Pool:
