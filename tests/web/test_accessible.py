@@ -21,9 +21,9 @@ from ..report.runs import circle_run
 from .browser_types import Page
 from .conftest import Served, follow, ready, settled
 from .replay.test_lab_page import kept
+from .test_confined import TURNS
 from .test_day import create, enter_series
 from .test_kept import imported
-from .test_other_process import TURNS
 from .test_typing import NAMELESS
 
 if importlib.util.find_spec("axe_playwright_python") is None:

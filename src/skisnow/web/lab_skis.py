@@ -16,7 +16,7 @@ from ..ski import Ski, read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
 from .settings import Limits
-from .uploads import Unpacking, in_other_process
+from .uploads import SKI_BOUNDS, Unpacking, confined
 from .words import replaced, typed_number
 
 FOLDER: Final = "skis"
@@ -217,7 +217,7 @@ def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], limits: Limits) -> 
         for name, content in uploads:
             unpacking.take(PurePosixPath(name.replace("\\", "/")).name, content)
         names = sorted(path.name for path in unpacking.folder.iterdir())
-        return in_other_process(read_ski_files, str(unpacking.folder), names)
+        return confined(SKI_BOUNDS, read_ski_files, str(unpacking.folder), names)
 
 
 def read_ski_files(folder: str, names: Sequence[str]) -> SkiTexts:

@@ -21,7 +21,7 @@ from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
 from .page_requests import free_place, hidden_folder, newest_first, plain_stem
-from .uploads import in_other_process
+from .uploads import BOUNDS, confined
 from .words import replaced, typed_number
 
 TRACKS_FOLDER: Final = "tracks"
@@ -268,7 +268,7 @@ class LabCourses:
         made = place.with_name(f".partial-{place.name}")
         write_file(made, data)
         try:
-            in_other_process(gates_of, made)
+            confined(BOUNDS, gates_of, made)
             made.rename(place)
         except OSError as error:
             raise cannot_write(place, error) from error

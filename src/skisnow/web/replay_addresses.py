@@ -28,7 +28,7 @@ from .elements import plain_page
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
 from .page_requests import add_upload, address, newest_first, uploaded_files
 from .runs import JOB, Job
-from .uploads import in_other_process
+from .uploads import BOUNDS, confined
 from .words import language_of_request
 
 LIST: Final = "/replay"
@@ -80,7 +80,7 @@ class RunFolders:
         if not track:
             return alone
         tracks = TrackFolders(self.folder)
-        beside = tracks.beside(track, alone, read=lambda *what: in_other_process(track_on_slope, *what))
+        beside = tracks.beside(track, alone, read=lambda *what: confined(BOUNDS, track_on_slope, *what))
         return replay_of_file(place, title=title, ski=ski, track=beside)
 
 
@@ -124,17 +124,17 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         folders, titles = map(runs.folder_of, (run, ghost)), (runs.title(run), runs.title(ghost))
         work = partial(page_of_folders, names=titles, back=LIST)
-        return HTMLResponse(in_other_process(work, *folders, language_of_request(request)))
+        return HTMLResponse(confined(BOUNDS, work, *folders, language_of_request(request)))
 
     def turns(request: Request, track: str, other: str = "") -> Response:
         files = map(tracks.file, (track, other) if other else (track,))
         named = [part for path, placing in files for part in (path, placing.called)]
         work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
-        return HTMLResponse(in_other_process(work, *named, language_of_request(request)))
+        return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
 
     def turns_table(request: Request, track: str) -> Response:  # noqa: ARG001 -- of an error page
         path, placing = tracks.file(track)
-        text = in_other_process(turns_of_track, path, placing.called)
+        text = confined(BOUNDS, turns_of_track, path, placing.called)
         named = f"attachment; filename*=UTF-8''{quote(f'{track}-{TURNS_FILE}', safe='')}"
         return Response(text, media_type="text/csv", headers={"content-disposition": named})
 
@@ -202,7 +202,7 @@ def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
         azimuth = number_of(str(form.get("azimuth", "")), Message("the direction of the fall line"))
         start = number_of(str(form.get("start", "")), Message("the time at the first point"))
         placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)
-        name = tracks.keep(upload.file, placing, check=lambda *what: in_other_process(check_track, *what))
+        name = tracks.keep(upload.file, placing, check=lambda *what: confined(BOUNDS, check_track, *what))
         return address(LIST, track=name)
 
     add_upload(app, TRACK_UPLOAD, store, max_fields=4)

@@ -29,7 +29,7 @@ from .lab_skis import (
 )
 from .page_requests import add_upload, address, file_input, submit_button, text_input, upload_form, uploaded_files
 from .settings import Lab
-from .uploads import in_other_process
+from .uploads import SKI_BOUNDS, confined
 from .words import said, typed_number
 
 ONE: Final = "1"
@@ -209,7 +209,7 @@ class SkiImportForms:
         try:
             self._skis.require_new(name)
             text = measured_text(name, {key: str(field_.value or "") for key, field_ in self._fields.items()})
-            await run.io_bound(in_other_process, check_ski_texts, text, "")
+            await run.io_bound(confined, SKI_BOUNDS, check_ski_texts, text, "")
             await run.io_bound(self._skis.save_texts, name, text, "")
         except SkisnowError as error:
             self._refuse(error_sentence(error))

@@ -33,7 +33,7 @@ from ..estimation.result_rows import first_hardness
 from .elements import error_sentence, plain_page
 from .page_requests import add_upload, required_id, uploaded_files
 from .settings import Lab
-from .uploads import add_uploaded, in_other_process, zip_download, zip_of_campaign
+from .uploads import BOUNDS, add_uploaded, confined, zip_download, zip_of_campaign
 
 IMPORT: Final = "/import"
 
@@ -74,7 +74,7 @@ def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
         for number, upload in enumerate(uploads):
             with (Path(name) / str(number)).open("xb") as file:
                 shutil.copyfileobj(upload.file, file)
-        return in_other_process(add_uploaded, lab.store.path, name, names, lab.limits)
+        return confined(BOUNDS, add_uploaded, lab.store.path, name, names, lab.limits)
 
 
 def files_in_memory(lab: Lab, kind: str, id_: str) -> FilesInMemory:

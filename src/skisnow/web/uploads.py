@@ -1,27 +1,32 @@
-"""Uploaded files: checked names, counted sizes, and reading in separate processes; a worker process."""
+"""Uploaded files: checked names, counted sizes, and reading in separate processes with limits; a worker process."""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import io
+import logging
 import multiprocessing
 import os
 import signal
 import stat
+import sys
 import threading
+import traceback
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
-from multiprocessing.connection import wait
+from multiprocessing.connection import Connection, wait
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO, Final, ParamSpec, TypeVar
 
 from starlette.responses import Response
 
-from .._support.errors import ParameterError
+from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
 from .._support.messages import Message, joined
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import CampaignFiles
@@ -212,16 +217,89 @@ Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
 
 
-def in_other_process(work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
-    """Call a function of a module in a new process; arguments and result are copies. Its errors are raised here."""
-    with _process_pool() as pool:
-        return pool.submit(work, *args, **named).result()
+_LOG: Final = logging.getLogger("skisnow.web")
+_LAST_WORDS: Final = 4000
 
 
-def _process_pool() -> ProcessPoolExecutor:
-    """Pool of one spawned process that ends with the server."""
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """Limits on time and memory; a campaign with a million readings takes 20 s and 1 GB on a laptop."""
+
+    seconds: float = 120.0
+    memory_bytes: int = 3_000_000_000
+
+
+BOUNDS: Final = Bounds()
+SKI_BOUNDS: Final = Bounds(seconds=60.0)  # most of it is the start of the process, on a busy laptop
+
+
+def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
+    """Call a function of a module in a separate process with limits; arguments and result are copies.
+
+    Raises ParameterError: the function exceeds the limits or ends its process. Errors of the function are raised here,
+        too.
+    """
+    assert not named
     context = multiprocessing.get_context("spawn")  # never by fork: the server has threads
-    return ProcessPoolExecutor(1, mp_context=context, initializer=end_with_server)
+    hears, tells = context.Pipe(duplex=False)
+    process = context.Process(target=_run_confined, args=(tells, bounds, work, args), daemon=True)
+    process.start()
+    tells.close()
+    try:
+        if not hears.poll(bounds.seconds):
+            raise ParameterError("it was not read within {seconds:g} s; give less of it, or check the file").tag(
+                "too_slow", seconds=bounds.seconds
+            )
+        answer, trace = hears.recv()
+    except EOFError as end:
+        raise _limit_error(bounds) from end
+    finally:
+        process.kill()
+        process.join()
+        hears.close()
+    if trace:
+        _LOG.error("an upload could not be read: %s", trace)
+    if isinstance(answer, SkisnowError):
+        raise answer
+    result: Answer = answer
+    return result
+
+
+def _limit_error(bounds: Bounds) -> ParameterError:
+    """Error for work that ended its process or exceeded the limits."""
+    return ParameterError(
+        "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
+        "check the file"
+    ).tag("cannot_read", seconds=bounds.seconds, megabytes=bounds.memory_bytes // 1_000_000)
+
+
+def _run_confined(tells: Connection, bounds: Bounds, work: Callable[..., object], args: tuple[object, ...]) -> None:
+    """Function of the new process: set limits, call the function, send the result."""
+    end_with_server()
+    _set_limits(bounds)
+    answer: tuple[object, str]
+    try:
+        answer = (work(*args), "")
+    except (FieldDataError, StoreError, OutputError) as error:
+        answer = (error, "")
+    except SkisnowError as error:
+        answer = (ParameterError(error.message).tag(error.code), "")
+    except Exception:  # logged by the server
+        answer = (_limit_error(bounds), traceback.format_exc()[-_LAST_WORDS:])
+    tells.send(answer)
+
+
+def _set_limits(bounds: Bounds) -> None:
+    """Set the limits of the operating system if it has them; the caller limits the time as well."""
+    if sys.platform == "win32":
+        return
+    import resource
+
+    seconds = int(bounds.seconds) + 1
+    limits = ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_DATA, bounds.memory_bytes), (resource.RLIMIT_CORE, 0))
+    for kind, most in limits:
+        with contextlib.suppress(ValueError, OSError):  # already lower, or not supported
+            resource.setrlimit(kind, (most, most))
 
 
 class Worker:
@@ -232,7 +310,10 @@ class Worker:
 
     async def do(self, work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
         """Call a function of a module in the worker process; arguments and result are copies."""
-        self._pool = self._pool or _process_pool()
+        if self._pool is None:
+            # never by fork: the server has threads
+            context = multiprocessing.get_context("spawn")
+            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=end_with_server)
         return await asyncio.wrap_future(self._pool.submit(work, *args, **named))
 
     def end(self) -> None:

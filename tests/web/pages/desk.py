@@ -310,15 +310,15 @@ def _listen(sheet: Sheet) -> None:
 
 
 def in_this_process(monkeypatch: pytest.MonkeyPatch, *modules: str) -> list[tuple[Any, ...]]:
-    """Do here the work of these modules of `skisnow.web` in another process; gives work and rest."""
+    """Do here the work of these modules of `skisnow.web` in another process; gives limits, work, rest."""
     heard: list[tuple[Any, ...]] = []
 
-    def done(work: Any, *what: Any) -> Any:
-        heard.append((work, *what))
+    def done(bounds: Any, work: Any, *what: Any) -> Any:
+        heard.append((bounds, work, *what))
         return work(*what)
 
     for name in modules:
-        monkeypatch.setattr(f"skisnow.web.{name}.in_other_process", done)
+        monkeypatch.setattr(f"skisnow.web.{name}.confined", done)
     return heard
 
 

@@ -85,7 +85,7 @@ def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: 
 
 
 def test_a_kept_track_is_read_in_another_process(runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A file that cannot be read is reported under its own name; test_other_process.py ends the other process."""
+    """A file that cannot be read is reported under its own name; test_confined.py ends the other process."""
     app, folder, tracks = FastAPI(), RunFolders(tmp_path), TrackFolders(tmp_path)
     add_addresses(app, folder)
     (tmp_path / "older").symlink_to(runs / "older")
@@ -96,7 +96,7 @@ def test_a_kept_track_is_read_in_another_process(runs: Path, monkeypatch: pytest
     assert beside is not None and beside.place[:, :2].tolist() == [[1.0, 2.0], [3.0, 4.0]]
     (tmp_path / "tracks" / name / "track.csv").rename(tmp_path / "tracks" / name / "track.gpx")
     (tmp_path / "tracks" / name / "track.gpx").write_bytes(b"<gpx>" + b"<extensions>" * 2000)
-    monkeypatch.setattr("skisnow.web.replay_addresses.in_other_process", lambda work, *arguments: work(*arguments))
+    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
     answer = Client(app).get("/replay/data/older", params={"track": name})
     assert answer.status_code == 404 and "x.csv" in answer.text
 
@@ -161,7 +161,7 @@ def test_a_kept_track_has_a_page_of_turns_in_both_languages(tmp_path: Path, monk
     places = [(k * 0.2, a, b, 0.0) for k, (a, b) in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
     name = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
     # each process would import the package again; another test checks that they are separate
-    monkeypatch.setattr("skisnow.web.replay_addresses.in_other_process", lambda work, *arguments: work(*arguments))
+    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
     estimates: list[Any] = []
 
     def estimate_once(*given: Any) -> Any:

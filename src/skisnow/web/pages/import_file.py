@@ -35,7 +35,7 @@ from ..elements import (
 )
 from ..settings import BUILD_S, Lab
 from ..transfer import FileImports, try_import
-from ..uploads import in_other_process
+from ..uploads import BOUNDS, confined
 from ..words import TABLES, label, number_text, said
 
 PATH: Final = "/import/{id_}"
@@ -102,7 +102,7 @@ class _ImportPage:
         """Compute the proposal with the current answers, and show it."""
         name, data = self.imports.content(self.id_)
         try:
-            tried = await run.io_bound(in_other_process, try_import, name, data, self.answers)
+            tried = await run.io_bound(confined, BOUNDS, try_import, name, data, self.answers)
         except SkisnowError as error:
             self._status.say(error_sentence(error), bad=True)
             self._store.set_enabled(False)

@@ -29,7 +29,7 @@ from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, t
 from ..page_requests import address
 from ..settings import BUILD_S, Lab
 from ..ski_editor import SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
-from ..uploads import in_other_process
+from ..uploads import SKI_BOUNDS, confined
 from ..widgets import ChartLine, LineChart, add_ski_table
 from .carve import ENDS
 
@@ -133,7 +133,7 @@ class _SkisPage:
         """Check a new text of a ski in a separate process with limits."""
         texts = (edit.text, edit.table)
         if texts != self._checked:
-            await run.io_bound(in_other_process, check_ski_texts, edit.text, edit.table)
+            await run.io_bound(confined, SKI_BOUNDS, check_ski_texts, edit.text, edit.table)
             self._checked = texts
 
     def _edited_skis(self, words: list[str], edit: SkiEditInput) -> list[tuple[Ski, str]]:

@@ -30,6 +30,7 @@ from skisnow.web.server import (
     require_allowed,
     serve,
 )
+from skisnow.web.uploads import Bounds
 from tests.coded import raises
 
 from ..desk import Desk
@@ -247,6 +248,18 @@ def test_an_answer_that_failed_says_what_it_may(desk: Desk, log: Path) -> None:
     assert "secret" not in text and "secret" in log.read_text(encoding="utf-8")
     assert plain_page("a", "b", 418, request).status_code == 418
     assert error_sentence(FieldDataError(["it is so"])).endswith(" it is so")
+
+
+def test_an_unforeseen_error_of_another_process_has_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[Any] = []
+    monkeypatch.setattr(uploads, "end_with_server", lambda: None)
+    monkeypatch.setattr(uploads, "_set_limits", lambda _: None)
+    for letters in (1, 9000):
+        work = raising(ValueError("x" * letters))
+        uploads._run_confined(cast(Any, SimpleNamespace(send=told.append)), Bounds(2.5, 3_000_000), work, ())
+    assert [(type(error), error.code) for error, _ in told] == [(ParameterError, "cannot_read")] * 2
+    assert told[0][1].startswith("Traceback") and told[0][1].endswith("ValueError: x\n")
+    assert len(told[1][1]) == 4000 and told[1][1].endswith("xx\n")
 
 
 def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -60,7 +60,7 @@ def test_a_campaign_is_imported_as_it_is(desk: Desk, here: list[Any], sent: list
     (stored,) = desk.lab.store.list()
     assert (answer.status_code, answer.headers["location"]) == (303, f"/?added={stored.id}")
     assert stored.name == "Desk"
-    assert len(here) == 1
+    assert [bounds.seconds for bounds, *_ in here] == [120.0]
     exported = desk.get(f"/export/kept/{stored.id}.zip")
     assert exported.headers["content-type"] == "application/zip"
     assert exported.headers["content-disposition"] == f'attachment; filename="campaign-{stored.id}.zip"'

@@ -148,7 +148,7 @@ def test_a_track_is_imported_with_what_was_typed(desk: Desk, here: list[Any]) ->
     assert taken("a.csv", start="2,5", azimuth="") == ("a.csv", None, 2.5)
     assert taken("a.gpx", gpx([(0, 0), (1, 1)]), azimuth="−90", start="") == ("a.gpx", -90.0, 0.0)
     assert taken(f"{'a' * 250}.csv")[0] == "a" * 200
-    assert len(here) == 4
+    assert [bounds.seconds for bounds, *_ in here] == [120.0] * 4
 
 
 @pytest.mark.usefixtures("here")
@@ -282,7 +282,7 @@ def test_a_run_has_its_track_and_the_readers_language(desk: Desk, run_files: dic
     )
     beside = replay_of_file(desk.lab.runs / "mine", title="mine", track=track)
     assert desk.get(f"/replay/data/mine?track={name}").content == replay_bytes(beside)
-    assert len(here) == 1
+    assert [bounds.seconds for bounds, *_ in here] == [120.0]
     for path, code in (("/replay/data/mine?track=x", "unknown_track"), ("/replay/data/x", "unknown_run")):
         assert (desk.get(path).status_code, desk.code) == (404, code)
 

@@ -19,6 +19,7 @@ from skisnow.web import lab_skis as measured_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, read_ski_files, ski_of_texts, ski_of_uploads, texts_of_ski
 from skisnow.web.settings import Limits
 from skisnow.web.ski_editor import FACTORS, SkiEditInput, edit_ski_texts
+from skisnow.web.uploads import SKI_BOUNDS
 from tests.coded import Coded, coded, raises
 
 from ..desk import Desk, Sheet
@@ -52,7 +53,7 @@ def added(answer: httpx.Response) -> str:
     return query["ski"][0]
 
 
-def test_three_widths_become_a_ski_of_the_lab(desk: Desk, other_process_words: list[tuple[object, ...]]) -> None:
+def test_three_widths_become_a_ski_of_the_lab(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     page = opened(desk)
     type_ski(page, "  my  ski ", {**TYPED, "camber_mm": ""})
     page.press("Add this ski")
@@ -65,7 +66,7 @@ def test_three_widths_become_a_ski_of_the_lab(desk: Desk, other_process_words: l
         "tip_width_mm": 116.0, "waist_width_mm": 68.0, "tail_width_mm": 101.0, "mass_kg": 2.231,
         "EI_N_m2": [100.0, 250.0, 440.0, 260.5, 100.0], "GJ_N_m2": [60.0, 140.0, 175.0, 140.0, 60.0],
     }  # fmt: skip
-    assert other_process_words == [(check_ski_texts, text, "")]
+    assert confined_words == [(SKI_BOUNDS, check_ski_texts, text, "")]
     assert not any("Not saved" in line for line in page.outline())
 
 
@@ -97,10 +98,11 @@ def test_a_field_that_is_missing_is_marked_until_it_is_typed(desk: Desk) -> None
     assert not any("status bad" in line for line in page.outline())
 
 
-def test_files_are_imported_from_the_form(desk: Desk, other_process_words: list[tuple[object, ...]]) -> None:
+def test_files_are_imported_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
     assert (answer.status_code, added(answer)) == (303, "my slalom")
-    ((work, _, names),) = other_process_words
+    ((bounds, work, _, names),) = confined_words
+    assert bounds is SKI_BOUNDS
     assert (work, names) == (read_ski_files, ["mine.toml", "rows.csv"])
     assert read_ski(saved_place(desk, "my slalom")).name == "my slalom"
     answer = desk.post("/skis/add", files=files(mine_toml=TEXT), data={"name": " Ski  A/1 "})
@@ -159,11 +161,12 @@ def test_an_invalid_ski_is_rejected(tmp_path: Path, texts: dict[str, str], expec
         read_ski_files(str(tmp_path), names)
 
 
-def test_uploads_are_named_without_their_folders(other_process_words: list[tuple[object, ...]]) -> None:
+def test_uploads_are_named_without_their_folders(confined_words: list[tuple[object, ...]]) -> None:
     uploads = [("Skis\\of mine/mine.toml", io.BytesIO(WITH_TABLE.encode())), ("rows.csv", io.BytesIO(TABLE.encode()))]
     found = ski_of_uploads(uploads, Limits())
     assert found.name == "my slalom"
-    ((_, folder, names),) = other_process_words
+    ((bounds, _, folder, names),) = confined_words
+    assert bounds is SKI_BOUNDS
     assert names == ["mine.toml", "rows.csv"]
     assert not Path(str(folder)).exists()
     with raises(ParameterError, "too_many_files", most=1):

@@ -12,6 +12,7 @@ from nicegui import ui
 from skisnow.ski import read_ski, ski_names
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, texts_of_ski
 from skisnow.web.page_requests import address
+from skisnow.web.uploads import SKI_BOUNDS
 
 from ..desk import Desk, Sheet
 from .shared import (
@@ -99,7 +100,7 @@ def test_a_ski_that_came_in_is_reported(desk: Desk, added: str) -> None:
     page.shows("Begun from mine")
 
 
-def test_a_factor_makes_an_edited_ski(desk: Desk, other_process_words: list[tuple[object, ...]]) -> None:
+def test_a_factor_makes_an_edited_ski(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     page = opened(desk)
     page.fill("EI ×", "1,5")
     page.shows("100 to 690 (carver, carver, edited)")
@@ -116,7 +117,7 @@ def test_a_factor_makes_an_edited_ski(desk: Desk, other_process_words: list[tupl
     page.shows("edited in the lab (Mass × 2) from: Atomic")
     page.fill("Mass ×", "1")
     page.shows("100 to 460 (carver, carver)")
-    assert other_process_words == []  # earlier texts are not read again
+    assert confined_words == []  # earlier texts are not read again
 
 
 @pytest.mark.parametrize(
@@ -229,7 +230,7 @@ def test_an_edited_ski_is_downloaded_with_its_table(desk: Desk, tmp_path: Path) 
     assert ski.width == pytest.approx(CARVER.width)
 
 
-def test_a_text_is_drawn_when_it_is_requested(desk: Desk, other_process_words: list[tuple[object, ...]]) -> None:
+def test_a_text_is_drawn_when_it_is_requested(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     page = opened(desk)
     page.fill("EI ×", "2")
     page.shows("100 to 920 (carver, carver, edited)")
@@ -245,7 +246,7 @@ def test_a_text_is_drawn_when_it_is_requested(desk: Desk, other_process_words: l
     assert downloads(page) == {}
     page.press("Draw the file")
     page.shows("100 to 460 (carver, longer)")
-    assert other_process_words == [(check_ski_texts, longer, "")]
+    assert confined_words == [(SKI_BOUNDS, check_ski_texts, longer, "")]
     lines = page.outline()
     assert lines[lines.index("Length") : lines.index("Running length")] == ["Length", "1.755 m", "1.800 m"]
     assert "field EI × = '1' numeric" in lines
@@ -259,7 +260,7 @@ def test_a_text_is_drawn_when_it_is_requested(desk: Desk, other_process_words: l
     page.fill(FILE, longer.replace("mass_kg = 2.246", "mass_kg = -1"))
     page.press("Draw the file")
     page.shows("[status bad] ski.toml: mass_kg is -1")
-    assert len(other_process_words) == 2
+    assert len(confined_words) == 2
 
 
 def test_a_table_that_was_changed_is_drawn_too(desk: Desk) -> None:

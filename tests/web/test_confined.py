@@ -1,9 +1,9 @@
-"""Work in another process, its values, and a lab that is killed."""
+"""Confined work, its values, and a lab that is killed."""
 
 import math
 import os
+import sys
 import threading
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
@@ -15,25 +15,41 @@ from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.studies import read_study
 from skisnow.web.page_requests import address, analysis, correction_address, entry_address, export, required_id
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
-from skisnow.web.uploads import in_other_process
+from skisnow.web.uploads import BOUNDS, Bounds, confined
 from skisnow.web.widgets import _short
 from skisnow.web.words import typed_number
 from tests.coded import raises
 
 from .browser_types import Page
+from .confined_work import dies, is_wrong, other_process, refuse, takes_memory, takes_time
 from .conftest import Served, entered, fill
-from .other_process import dies, other_process, refuse
 from .test_day import create
 
 
 def test_the_answer_and_the_errors_come_back() -> None:
-    word, process = in_other_process(other_process, "snow")
+    word, process = confined(BOUNDS, other_process, "snow")
     assert word == "snow"
     assert process != os.getpid()
     with pytest.raises(FieldDataError, match="a row is missing"):
-        in_other_process(refuse)
-    with pytest.raises(BrokenProcessPool):
-        in_other_process(dies)
+        confined(BOUNDS, refuse)
+
+
+def test_what_ends_the_other_process_is_reported_here(capfd: pytest.CaptureFixture[str]) -> None:
+    for work in (dies, is_wrong):
+        with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=3000):
+            confined(BOUNDS, work)
+    assert "Traceback" not in capfd.readouterr().err
+
+
+def test_time_has_an_end() -> None:
+    with raises(ParameterError, "too_slow", seconds=0.5):
+        confined(Bounds(seconds=0.5), takes_time)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="no such limit")
+def test_memory_has_an_end() -> None:
+    with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=300):
+        confined(Bounds(memory_bytes=300_000_000), takes_memory)
 
 
 @pytest.mark.parametrize(
