@@ -48,7 +48,7 @@ class _Coded(Exception):  # noqa: N818 -- of errors and warnings
         return self.message.fields if isinstance(self.message, Message) else {}
 
     def text(self, language: str = ENGLISH) -> str:
-        """The message in a language."""
+        """Message of the error in a language, by default English."""
         return translated(self.message, language)
 
     def at(self, place: object) -> Self:

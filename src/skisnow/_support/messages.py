@@ -119,7 +119,7 @@ def translated(value: object, language: str) -> str:
 
 @cache
 def translations(language: str) -> gettext.NullTranslations:
-    """Compiled translations of a language."""
+    """Compiled translations of a language; those of English return each text unchanged."""
     if language == ENGLISH:
         return gettext.NullTranslations()
     with (FOLDER / f"{language}.mo").open("rb") as file:

@@ -38,7 +38,7 @@ class Template:
     example: Mapping[str, str | float]
 
     def explanations(self) -> Iterator[tuple[str, str]]:
-        """Pairs of column and explanation."""
+        """Columns of the example, each with its meaning, allowed numbers and unit; "" if there is none."""
         numbers = {
             quantity.name: f"{quantity.meaning}; {allowed_words(quantity)} in {quantity.unit}"
             for quantity in self.form.numbers

@@ -136,7 +136,7 @@ class RacingLine(Shown):
         return self._y[i] + way * steepest * (2.0 * first / math.pi + u - first), steepest, 0.0
 
     def speed_at(self, x: float) -> float:
-        """`LineTurn.speed` (a ratio) of the turn with the next apex after a place x down the slope (m)."""
+        """Speed ratio, `LineTurn.speed`, of the turn whose apex is the next after x (m) down the slope."""
         return self.turns[min(bisect_right(self._x, x, lo=1), len(self.turns)) - 1].speed
 
     def greatest_curvature(self) -> float:
@@ -172,14 +172,14 @@ def turn_lengths(course: Course, start: tuple[float, float]) -> list[float]:
 
 
 def course_of(scenario: Scenario) -> Course:
-    """Course of the scenario."""
+    """Course of a scenario; ParameterError without one."""
     if scenario.course is None:
         raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =").tag("no_data")
     return scenario.course
 
 
 def skier_of(scenario: Scenario) -> Skier:
-    """Skier of the scenario."""
+    """Skier of a scenario; ParameterError without one."""
     if scenario.skier is None:
         raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"').tag("no_data")
     return scenario.skier
@@ -204,7 +204,7 @@ def with_numbers(line: RacingLine, numbers: Sequence[Sequence[float]], first: in
 
 
 def first_gates(line: RacingLine, gates: int) -> RacingLine:
-    """The line cut to its first gates."""
+    """Line with only the first `gates` gates of its course and their turns."""
     return RacingLine(replace(line.course, gates=line.course.gates[:gates]), line.start, line.turns[:gates])
 
 

@@ -37,7 +37,7 @@ class Evaluated:
 
     @property
     def value(self) -> float:
-        """Value to minimise."""
+        """Number that the search minimises: the time (s), or above 1000 for a line that fails."""
         return float(self.row["value"])
 
 

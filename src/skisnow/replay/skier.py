@@ -194,7 +194,7 @@ class Part:
 
 
 def skier_parts(height: float) -> list[Part]:
-    """Parts of a skier with this height (m)."""
+    """All drawn parts of a skier of this height (m): trunk, head, limbs, boots and poles."""
     return [*_trunk_and_head(height), *(part for side in ("left", "right") for part in _limb_parts(side, height))]
 
 

@@ -195,7 +195,7 @@ def parameters_table(result: Identification) -> Table:
 
 
 def correlation_table(result: Identification) -> Table:
-    """Correlations of the estimates."""
+    """Table with the correlation of each pair of estimated parameters; None if it is not finite."""
     names = [row.parameter.name for row in result.parameters]
     correlations = [[r if np.isfinite(r) else None for r in row] for row in result.correlation.tolist()]
     return Table(

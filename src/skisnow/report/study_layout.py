@@ -104,7 +104,7 @@ def fixed_inputs(table: StudyTable) -> str:
 
 
 def write_caption(figure: Figure, text: str) -> None:
-    """Write the caption above the panels."""
+    """Write a text above the panels, at the left; nothing if it is empty."""
     if text:
         figure.suptitle(text, x=0.01, ha="left", fontsize=8.0)
 

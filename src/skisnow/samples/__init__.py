@@ -107,7 +107,7 @@ _HEADER_BYTES: Final = 512
 
 
 def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
-    """Name and content of each snow sample."""
+    """File name and content of the snow pit (CAAML), weather (SMET) and SnowMicroPen recording."""
     yield "pit.caaml", caaml_text(sample_pit())
     yield "weather.smet", weather_smet(random)
     yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)

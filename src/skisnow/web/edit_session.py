@@ -100,7 +100,7 @@ class EditSession:
         return self._journals.entries(self.id, after=self._last)
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
-        """Store an entry on disk; see `Journals.append`."""
+        """Append an entry and update the state; OvertakenError if one after `seen` is about the same test."""
         written = self._journals.append(self.id, entry, seen=seen)
         self.refresh()
         return written

@@ -141,7 +141,7 @@ def add_items(items: Iterable[str], add: Callable[[str], object] = Words) -> Non
 
 
 def add_head(columns: Iterable[str]) -> None:
-    """Add the row of headings of a table."""
+    """Add a table's head with one heading per column, in the language of the page."""
     with ui.element("thead"), ui.element("tr"):
         for words in columns:
             with ui.element("th").props("scope=col"):
@@ -229,7 +229,7 @@ def _language_links() -> None:
 
 
 def heading(text: str, level: int = 2) -> None:
-    """Add a heading."""
+    """Add a heading of a level from 1 to 6, in the language of the page."""
     with ui.element(f"h{level}"):
         Words(text)
 

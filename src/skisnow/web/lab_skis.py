@@ -134,7 +134,7 @@ def _read_in_folder(place: Path) -> tuple[Ski, str]:
 
 
 def check_ski_texts(text: str, table: str) -> None:
-    """Check the texts of a ski; errors as in `ski_of_texts`."""
+    """Reject texts of a ski file and its table that are not a valid ski (ParameterError)."""
     ski_of_texts(text, table)
 
 
@@ -221,7 +221,7 @@ def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], limits: Limits) -> 
 
 
 def read_ski_files(folder: str, names: Sequence[str]) -> SkiTexts:
-    """Read the ski from a folder of `ski_of_uploads`."""
+    """Ski of uploaded files in a folder, with its texts; rejects more or less than one .toml file."""
     files = [name for name in names if name.lower().endswith(".toml")]
     if len(files) != 1:
         raise ParameterError(

@@ -60,7 +60,7 @@ _ANSWERS: Final = WeakKeyDictionary[Client, dict[int, bool]]()
 
 
 def current_request() -> PageRequest:
-    """The request that is being handled."""
+    """Request of the browser whose action is running; an empty one outside of an action."""
     return _ASKED.get()
 
 
@@ -101,7 +101,7 @@ def _parse_request(message: Any) -> PageRequest:
 
 
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
-    """Add a button whose action moves the focus, so that the page waits for it; see `skisnow.web.elements.button`."""
+    """Add a button whose action moves the focus, so that the page waits for it; ``kind``: main or quiet."""
     return button(text, None, kind).on("click", event_handler(act), js_handler=ASK)
 
 

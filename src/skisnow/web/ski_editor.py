@@ -228,7 +228,7 @@ class SkiImportForms:
 
 
 def _file_form() -> None:
-    """Form for the files of a ski."""
+    """Add the form that uploads a ski file with its table, and optionally another name."""
     sentence(Message("The .toml file of a ski and the table that it names."), "quiet")
     with upload_form(SKI_UPLOAD):
         with ui.element("div").classes("acts"):

@@ -41,7 +41,7 @@ class Range:
         return f"{{ from = {self.low!r}, to = {self.high!r}, n = {self.n}{log} }}"
 
     def words(self) -> str:
-        """The range in words."""
+        """Message with both ends, the number of values, and whether they are logarithmic."""
         fields = {"low": number_text(typed_form(self.low)), "high": number_text(typed_form(self.high)), "n": self.n}
         if self.log:
             return Message("{low} to {high}, {n} values, logarithmic", **fields)
@@ -69,7 +69,7 @@ class StudyQuestion:
         return {**self.beside, STUDY: self.text().encode("utf-8")}
 
     def text(self) -> str:
-        """Text of study.toml."""
+        """Text of study.toml with the subject, fixed inputs, lists and varied inputs."""
         lines = [f'out = "{TABLE}"']
         if self.of != CARVE:
             lines.append(f"scenario = {toml_text(self.of)}")

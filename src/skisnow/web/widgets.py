@@ -150,7 +150,7 @@ class JobCard:
                 self.add_buttons(job, act)
 
     def add_buttons(self, job: Any, act: Act) -> None:
-        """Add further buttons."""
+        """Add the buttons and links of the kind of job; each subclass must define it."""
         raise NotImplementedError
 
     def inputs(self, job: Any) -> tuple[str, ...]:
@@ -158,7 +158,7 @@ class JobCard:
         raise NotImplementedError
 
     def show(self, job: Any) -> None:
-        """Show the state of the job."""
+        """Show name, inputs, state and message of the job, its progress while it runs, and the button to cancel."""
         self._title.set_text(job.shown_name)
         parts = (*self.inputs(job), Message(job.state), job.said)
         self._words.set_text(joined([part for part in parts if part], " · "))
@@ -184,7 +184,7 @@ class JobList:
         ui.timer(EVERY_S, self.show)
 
     def show(self) -> None:
-        """Update the cards."""
+        """Add cards of new jobs, remove those of removed jobs, and show the state of all."""
         jobs = self._runs.jobs()
         self._nothing.set_visibility(not jobs)
         for name in self._cards.keys() - {job.name for job in jobs}:

@@ -200,7 +200,7 @@ use_language_of_pages(language_of)
 
 
 def language_of_request(request: Request) -> str:
-    """Code of the language of a request."""
+    """Language code of a request: the chosen one (cookie), else the first accepted one that is known, else "en"."""
     return language_asked(request.cookies.get(COOKIE), request.headers.get("accept-language", ""))
 
 

@@ -187,7 +187,7 @@ class Pool:
 
 
 def worker_count(workers: int | None) -> int:
-    """The same number of workers, at least 1; for None the number of cores available to this process."""
+    """Number of workers: `workers`, or the available cores for None; rejects a number below 1."""
     if workers is None:
         return available_cores()
     if workers < 1:

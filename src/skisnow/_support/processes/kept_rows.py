@@ -144,7 +144,7 @@ class KeptRows:
         return (number for (number,) in self._run_query("select number from rows order by number"))
 
     def row(self, number: int) -> Row:
-        """The row of a finished point."""
+        """Values of the finished point with this number; a ParameterError if its row was changed."""
         ((_, text),) = self._select_checked_rows("where number = ?", number)
         row: Row = own_json(text)
         return row

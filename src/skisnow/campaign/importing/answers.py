@@ -61,7 +61,7 @@ class Answers:
         return plain.get(plain_heading(f"{table}.{heading}"), plain.get(plain_heading(heading), ""))
 
     def toml_lines(self) -> list[str]:
-        """Lines of ``[import]`` in campaign.toml."""
+        """Lines of the tables ``[import.KIND]`` in campaign.toml, one key per answer; empty without answers."""
         tables = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         return [
             line

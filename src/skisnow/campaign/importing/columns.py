@@ -227,13 +227,13 @@ def stated_sites(sheet: str, notes: Sequence[Note]) -> set[str]:
 
 
 def stated_days(notes: Iterable[Note]) -> set[str]:
-    """Days that notes state, in ISO 8601."""
+    """Dates (ISO 8601) found in the texts of notes; impossible ones are left out."""
     days = {iso_moment(match[0].replace(". ", ".")) for note in notes for match in _DAY.finditer(note.text)}
     return {day for day in days if day}
 
 
 def stated_observers(notes: Iterable[Note]) -> list[str]:
-    """Observers that notes state."""
+    """Different names after a word such as "observer" in the texts of notes, in their order."""
     lists = [match[2] for note in notes for match in _OBSERVERS.finditer(note.text)]
     return list(dict.fromkeys(name.strip() for names in lists for name in re.split(r"[/&+]", names) if name.strip()))
 

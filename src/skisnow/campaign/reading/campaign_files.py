@@ -58,13 +58,13 @@ class FilesInMemory(CampaignFiles):
     others: tuple[str, ...] = ()
 
     def read(self, name: str) -> bytes | None:
-        """See `CampaignFiles.read`."""
+        """Bytes of a file; FileNotFoundError if it is not in memory."""
         if name not in self.contents:
             raise FileNotFoundError(name)
         return self.contents[name]
 
     def names(self) -> dict[str, bool]:
-        """See `CampaignFiles.names`."""
+        """Names of all files, each with True."""
         return dict.fromkeys((*self.contents, *self.others), True)
 
 

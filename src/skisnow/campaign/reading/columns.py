@@ -89,7 +89,7 @@ class NameCollector:
         self._parts: list[IntArray] = []
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:
-        """See `Collector.take`."""
+        """Store names by number; a blank one is an error if the column is required."""
         code = np.fromiter(map(self._codes.__getitem__, cells), np.int64, len(cells))
         self._parts.append(code)
         blank = self._codes.code_of_name.get("")
@@ -115,7 +115,7 @@ class NumberCollector:
         self._parts: list[FloatArray] = []
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:
-        """See `Collector.take`."""
+        """Convert and store numbers in the unit of the column; text, gaps and values out of range are errors."""
         values = numbers(cells, self._mark)
         name = self._column.name
         for index in np.flatnonzero(np.isnan(values)).tolist():
@@ -167,7 +167,7 @@ class TextCollector:
         self._texts: list[str] = []
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:  # noqa: ARG002
-        """See `Collector.take`."""
+        """Store texts without surrounding spaces; none is an error."""
         once: dict[str, str] = {}
         self._texts.extend(once.setdefault(cell, cell) for cell in map(str.strip, cells))
 
@@ -227,7 +227,7 @@ class DateCollector(TextCollector):
         self._unread: list[tuple[int, str, str]] = []
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:
-        """See `Collector.take`."""
+        """Store dates as ISO 8601 where they are unambiguous; others stay as written and are recorded."""
         for index, cell in enumerate(map(str.strip, cells)):
             if cell not in self._iso_text:
                 self._iso_text[cell] = iso_moment(cell)

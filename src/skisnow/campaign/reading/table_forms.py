@@ -53,7 +53,7 @@ class TableForm:
 
     @property
     def required(self) -> tuple[str, ...]:
-        """Names of the required columns."""
+        """Names, required numbers and texts: the columns that a table must have."""
         return self.names + tuple(column.name for column in self.numbers if column.needed) + self.texts
 
     @property

@@ -39,7 +39,7 @@ class TomlValues:
     problems: list[Problem]
 
     def path_of(self, key: str) -> str:
-        """Path of a key of this table."""
+        """Key with the path of this table before it, such as "tool.name"."""
         return f"{self.path}.{key}" if self.path else key
 
     def refuse(

@@ -46,11 +46,11 @@ class UnfoldedFiles(CampaignFiles):
     problems: list[Problem] = field(default_factory=list)
 
     def read(self, name: str) -> bytes | None:
-        """See `CampaignFiles.read`."""
+        """Bytes of a file, or CSV or TOML of a sheet with its name; None for a directory, pipe or the like."""
         return self.of_sheets[name] if name in self.of_sheets else self.files.read(name)
 
     def names(self) -> dict[str, bool]:
-        """See `CampaignFiles.names`: with the sheets instead of the workbooks."""
+        """Names of the files with True for plain ones; sheets are in place of their workbooks."""
         there = {name: is_file for name, is_file in self.files.names().items() if name not in self.hashes}
         return there | dict.fromkeys(self.of_sheets, True)
 

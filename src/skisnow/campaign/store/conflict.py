@@ -80,7 +80,7 @@ class Conflict:
 
     @property
     def kind(self) -> Kind:
-        """Kind of the conflict, a key of `_KINDS`."""
+        """Kind of the conflict by its entries: "described", "begun twice", "added to", "cancelled" and so on."""
         actions = {entry.action for entry in self.entries}
         added = [any(entry.action == "add" for entry in side) for side in (self.entries_here, self.entries_there)]
         if self.file == DESCRIPTION:

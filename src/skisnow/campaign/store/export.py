@@ -88,7 +88,7 @@ def photo_of(attachment: ReplayedTest) -> bytes:
 
 
 def position_entry(file: str, test: str, position: Position, *, who: str = "") -> NewEntry:
-    """Entry that attaches a position to a test."""
+    """New entry with latitude and longitude (°) and accuracy (m) of a test; ``who``: its writer."""
     cells = {name: f"{getattr(position, name):.10g}" for name in ("latitude_deg", "longitude_deg", "accuracy_m")}
     return _attachment_entry(file, test, cells, who)
 

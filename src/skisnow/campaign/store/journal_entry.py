@@ -133,7 +133,7 @@ def now() -> str:
 
 
 def next_sequence(connection: Connection) -> int:
-    """Sequence of the next entry in the store."""
+    """Largest sequence number of an entry in the store plus 1; 1 for an empty store."""
     query = select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)
     return int(connection.execute(query).scalar_one())
 

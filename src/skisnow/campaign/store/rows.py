@@ -45,7 +45,7 @@ class StoredCampaign:
 
     @property
     def n_files(self) -> int:
-        """Number of its files."""
+        """Number of files of the campaign."""
         return len(self.files)
 
     @property
@@ -104,7 +104,7 @@ def damage_error(what: str) -> StoreError:
 
 
 def entry_damage_error(number: object, journal_id: object) -> StoreError:
-    """Error for a damaged entry of a journal."""
+    """Error that the entry `number` of a campaign in entry is damaged."""
     words = Message("The entry {number} of the campaign in entry {id}", number=str(number), id=str(journal_id))
     return damage_error(words)
 

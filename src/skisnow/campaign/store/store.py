@@ -106,7 +106,7 @@ class Store(Shown):
         return Facts(f"at {self.path}")
 
     def close(self) -> None:
-        """Close the store."""
+        """Close all connections to the database file."""
         self.engine.dispose()
 
     def __enter__(self) -> Self:

@@ -130,7 +130,7 @@ def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
 
 
 def _entry_damage(connection: Connection, row: _Row) -> str:
-    """What is damaged in an entry, in words, or ""."""
+    """Reason why an entry is damaged: changed, unreadable or without checksum; "" if it is sound."""
     if row["sha256"] is not None and _utf8(row["sha256"]) != entry_sha256(row):
         return "it is not as it was written down"
     query = select(journal_entry).where(journal_entry.c.sequence == int(_utf8(row["sequence"])))

@@ -83,7 +83,7 @@ class ReportData:
 
     @property
     def results(self) -> Json:
-        """Contents of results.json."""
+        """Results of the analysis by key, as in results.json."""
         return self.analysis.results
 
     @property

@@ -96,7 +96,7 @@ def growth_table(data: ReportData) -> Table:
 
 
 def growth_sites_table(data: ReportData) -> Table:
-    """Growth of the hardness with depth, by site."""
+    """Table with one row per site: number of series and growth γ of the hardness with its 95 % interval."""
     return _sites_table(
         "hardness_growth_sites",
         Message(

@@ -53,7 +53,7 @@ def _experiment_line(kind: str, rows: list[Json]) -> str:
 
 
 def analysis_figure(analysis: Analysis, what: str) -> Figure:
-    """One figure of the report by its name; see `Analysis.plot`."""
+    """Figure of an analysis with the name `what`, in the style of the report; rejects an unknown name."""
     from ..figures.drawing import Drawing
     from ..figures.style import journal_style, site_styles
     from .page import drawers_of
@@ -72,7 +72,7 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
 
 
 def analysis_dataframe(analysis: Analysis, kind: str) -> DataFrame:
-    """One row per experiment; see `Analysis.to_dataframe`."""
+    """DataFrame with a row per experiment of `kind`, penetration or shear; needs pandas."""
     pandas = import_extra("pandas", extra="pandas", what=Message("An analysis as a DataFrame"))
     if kind not in KINDS:
         raise ParameterError("No experiments {kind!r}. {names}").tag(
@@ -82,7 +82,7 @@ def analysis_dataframe(analysis: Analysis, kind: str) -> DataFrame:
 
 
 def analysis_dataset(analysis: Analysis) -> Dataset:
-    """All experiments; see `Analysis.to_xarray`."""
+    """Dataset of all experiments: variables by kind and column, with their units; needs xarray."""
     xarray = import_extra("xarray", extra="xarray", what=Message("An analysis as a Dataset"))
     variables: dict[str, Any] = {}
     for kind in KINDS:

@@ -209,7 +209,7 @@ def weather_table(data: ReportData) -> Table:
 
 
 def snow_micro_pen_table(data: ReportData) -> Table:
-    """Every recording of a SnowMicroPen."""
+    """Table with one row per recording of a SnowMicroPen: mean force, resistance and structure."""
     recordings = data.results["snow_micro_pen"]
     columns = (
         Column("recording", Message("Recording"), "text"),

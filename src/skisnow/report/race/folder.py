@@ -177,7 +177,7 @@ def worth_summary(variants: Sequence[Worth]) -> str:
 def race_dict(
     result: QuickestLine, checked: Sequence[tuple[str, Score]], worth: Sequence[Worth] = ()
 ) -> dict[str, Any]:
-    """Contents of race.json."""
+    """Values of race.json: the quickest line with times and turns, checks by other methods, and worths."""
     return {
         "model": result.model,
         "seed": result.seed,

@@ -163,7 +163,7 @@ _FIGURES: Final = {
 
 
 def run_figure(run: Run, what: str) -> Figure:
-    """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
+    """Figure of a run with the name `what`, in the style of the reports; rejects unknown names and empty runs."""
     if what not in _FIGURES:
         raise ParameterError("unknown figure {figure!r} of a run. {nearest}").tag(
             "unknown_figure", figure=what, nearest=suggest_and_list(what, _FIGURES)

@@ -115,13 +115,13 @@ def _write_variable(file: Any, variable: RunVariable, run: Run) -> None:
 
 
 def run_dataframe(run: Run) -> DataFrame:
-    """DataFrame with the rows of track.csv; see `Run.to_dataframe`."""
+    """DataFrame of a run with the rows and columns of track.csv; needs pandas."""
     pandas = import_extra("pandas", extra="pandas", what=Message("A run as a DataFrame"))
     return pandas.DataFrame(track_table(run), columns=list(track_columns(run)))
 
 
 def run_dataset(run: Run) -> Dataset:
-    """Dataset with the variables of run.nc, their units and meanings; see `Run.to_xarray`."""
+    """Dataset of a run with the variables of run.nc, their units and meanings; needs xarray."""
     xarray = import_extra("xarray", extra="xarray", what=Message("A run as a Dataset"))
     stored = variables_of(run)
     coordinates = {variable.name for variable in stored if (variable.name,) == variable.dimensions}

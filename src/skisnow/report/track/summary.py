@@ -297,7 +297,7 @@ def _turn_row(summary: TrackSummary, number: int, turn: Turn) -> dict[str, Any]:
 
 
 def turns_csv(summary: TrackSummary) -> str:
-    """CSV of the turns."""
+    """CSV text with a row for each turn of a track; the columns are TURN_COLUMNS."""
     return _csv_text(TURN_COLUMNS, ([row[name] for name in TURN_COLUMNS] for row in turn_rows(summary)))
 
 

@@ -108,7 +108,7 @@ class TurnChain(Shown):
         return [sentence.replace("<sub>", "_").striptags() for sentence in plain_sentences(self)]
 
     def report(self, folder: str | Path, *, language: str = ENGLISH) -> Path:
-        """Write report.html, turn.json and figures/ of the whole chain; see `report.turn.page.write_turn_report`."""
+        """Write report.html, turn.json and figures/ of the whole chain into a folder; returns the page's path."""
         from .page import write_turn_report
 
         return write_turn_report(self, folder, language=language)

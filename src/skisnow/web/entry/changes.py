@@ -193,7 +193,7 @@ _DONE: Final = {
 
 
 def _entry_words(entry: JournalEntry, view: TableView) -> str:
-    """Content of an entry of the history in words."""
+    """Sentence about an entry: its added or changed cells, or that it cancels or takes back; with the reason."""
     cells = {column: number_text(text) for column, text in entry.cells.items()}
     if entry.is_from_file:
         return entry.why

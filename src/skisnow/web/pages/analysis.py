@@ -53,7 +53,7 @@ REPORT_POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src d
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the pages that analyse a campaign, and the addresses of their reports."""
     worker, open_pages = Worker(), dict[str, AnalysisView]()
     analyses = AnalysisCache(lab, worker)
     app.on_shutdown(worker.end)

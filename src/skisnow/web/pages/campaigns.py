@@ -43,7 +43,7 @@ CARDS: Final = (
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the page that lists the campaigns of the lab and imports further ones."""
 
     @ui.page(PATH)
     def campaigns(added: str = "") -> None:

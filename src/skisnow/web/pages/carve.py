@@ -78,7 +78,7 @@ DESIGNED: Final = Message("the designed ski")
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the page that computes carved turns of one or two skis."""
     solver, skis = Solver(), LabSkis(lab.runs)
 
     @ui.page(PATH)

@@ -49,7 +49,7 @@ SHAPE_WORDS: Final = {
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the page with the form of a campaign's description."""
 
     @ui.page("/describe")
     def describe(entry: str = "") -> None:

@@ -50,7 +50,7 @@ FACTS: Final = {
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the page that designs a ski for a turn radius."""
     solver, skis = Solver(), LabSkis(lab.runs)
 
     @ui.page(PATH)

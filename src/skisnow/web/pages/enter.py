@@ -25,7 +25,7 @@ HERE = "/"
 
 
 def add_page(lab: Lab) -> None:
-    """Add both pages to the application."""
+    """Add the page to enter tests, and the one to correct stored ones."""
     _add_correction(lab)
 
     @ui.page("/enter/{id_}")
@@ -82,7 +82,7 @@ UNREAD = Message("no table of this campaign can be read; its errors are listed u
 
 
 def _add_correction(lab: Lab) -> None:
-    """Add the page for corrections to the application."""
+    """Add the page that corrects tests of a stored campaign."""
 
     @ui.page("/correct/{id_}", response_timeout=BUILD_S)
     async def correct(id_: str, table: str = "", test: str = "") -> None:

@@ -65,7 +65,7 @@ QUESTIONS: Final = {
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the page that imports a workbook or table in any layout."""
     imports = FileImports(lab)
 
     @ui.page(PATH, response_timeout=BUILD_S)
@@ -267,7 +267,7 @@ def _place_words(problem: Problem) -> str:
 
 
 def _question_words(question: Question) -> Message:
-    """Text of a question of an import."""
+    """Question about a heading, unit, table, site, row or cell of an imported file, for the page."""
     key, option = question.key, question.option
     if option in {"column", "unit"}:
         kind, _, heading = key.partition(".")

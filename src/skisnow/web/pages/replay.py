@@ -37,7 +37,7 @@ NONE: Final = "none"
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page and the addresses of the replay."""
+    """Add the page that replays runs next to measured tracks, and the addresses of its data."""
     runs, tracks = RunFolders(lab.runs), TrackFolders(lab.runs)
     add_addresses(app, runs)
     add_track_uploads(app, tracks)
@@ -148,7 +148,7 @@ def _select(key: str, text: str, names: dict[str, str], chosen: str, *, form: st
 
 
 def _add_track_form(*, is_open: bool) -> None:
-    """Form for a measured track."""
+    """Add the folded form that uploads a measured track with its place on the slope."""
     with folded(Message("Add a measured track"), is_open=is_open):
         sentence(
             Message(

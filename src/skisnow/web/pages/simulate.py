@@ -94,7 +94,7 @@ SECTION_WORDS: Final = {
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application and start the queue."""
+    """Add the page that simulates runs, and start the queue of its jobs."""
     runs = Runs(lab.runs)
     app.on_startup(lambda: background_tasks.create(runs.work(), name="runs"))
     app.on_shutdown(runs.end)
@@ -320,7 +320,7 @@ class _Card(JobCard):
             button(Message("Use this name"), lambda: act(lambda: runs.rename(job.name, str(title.value))))
 
     def add_buttons(self, job: Job, act: Act) -> None:  # noqa: ARG002
-        """Add the link to the replay."""
+        """Add the link to the replay of the run."""
         watch = link(Message("Watch"), show_address(job.name), "main")
         self._watch = named(watch, Message("Watch {name}", name=job.name))
 
@@ -333,6 +333,6 @@ class _Card(JobCard):
         return job.scenario, words, job.given
 
     def show(self, job: Job) -> None:
-        """Show the state of the run."""
+        """Show the job's state on its card, and the link to the replay if the run was written."""
         super().show(job)
         self._watch.set_visibility((self.runs.folder / job.name / RUN_FILE).is_file())

@@ -46,7 +46,7 @@ STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application."""
+    """Add the page that shows, compares and edits skis."""
     skis = LabSkis(lab.runs)
 
     @ui.page(PATH, response_timeout=BUILD_S)

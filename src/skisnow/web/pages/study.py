@@ -50,7 +50,7 @@ UNLOADING: Final = "unloading_ratio"
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page to the application and start the queue."""
+    """Add the page that computes studies, and start the queue of their jobs."""
     studies = Studies(lab.runs)
     app.on_startup(lambda: background_tasks.create(studies.work(), name="studies"))
     app.on_shutdown(studies.end)

@@ -50,7 +50,7 @@ NO_SCRIPTS: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
 
 
 def table_address(name: str) -> str:
-    """Address of the page of a study."""
+    """Address of the page with the results of the study `name`."""
     return f"{HERE}/{quote(name, safe='')}"
 
 
@@ -60,7 +60,7 @@ def _file_address(name: str, file: str) -> str:
 
 
 def add_page(lab: Lab) -> None:
-    """Add the page and the addresses of its files."""
+    """Add the page with the results of a study, and the addresses of its files."""
     studies = Studies(lab.runs)
 
     @ui.page(f"{HERE}/{{name}}")
