@@ -72,6 +72,7 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
 
 
 def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties) -> Equilibrium:
+    """Equilibrium at rest, if it is requested or no unloading ratio is given; otherwise that of a carved turn."""
     arguments = question.arguments
     if question.at_rest or question.unloading_ratio is None:
         without = ("unloading_ratio", "side_force_bending", "side_force_spread", "groove", "moment_balance")
@@ -80,6 +81,7 @@ def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties) 
 
 
 def _warn_outside_ranges(snow: SnowProperties, edge_angle: float, *, at_rest: bool) -> None:
+    """Warn of hardness, edge angle (rad) and, unless the ski rests, stress outside the measured ranges."""
     SNOW_HARDNESS.warn_outside(snow.snow_hardness, "penetration")
     PENETRATION_EDGE_ANGLE.warn_outside(edge_angle, "penetration")
     if snow.failure_shear_stress is not None and not at_rest:
@@ -198,6 +200,7 @@ def _in_unit(stated: float | None, value: float | None, unit: float) -> float | 
 
 
 def _json_numbers(values: FloatArray | None, unit: float) -> list[float | None] | None:
+    """Numbers for JSON in a unit, None for those that are not finite; None without an array."""
     if values is None:
         return None
     numbers: list[float | None] = (values / unit).tolist()

@@ -153,6 +153,7 @@ class EdgeLine:
         return self._contact_end(depth, int(below[0]), -1), self._contact_end(depth, int(below[-1]), 1)
 
     def _contact_end(self, depth: FloatArray, last: int, outwards: int) -> float:
+        """Station (m) where the depth passes 0 outside of station `last`, or the ski's end."""
         beyond = last + outwards
         if not 0 <= beyond < len(depth):
             return float(self._model.ski.station[0 if outwards < 0 else -1])
@@ -160,7 +161,7 @@ class EdgeLine:
         return float(self.station[last] + share * (self.station[beyond] - self.station[last]))
 
     def greatest_slope(self) -> float:
-        """Greatest slope of the bent ski against the boot, over the running length."""
+        """Largest absolute slope (m/m) of the deflection along the ski, between its contact points."""
         front, rear = self._model.ski.contact_points
         inside = (self.station <= front) & (self.station >= rear)
         return float(np.max(np.abs(np.gradient(self.bend[0][inside], self.station[inside]))))

@@ -283,6 +283,7 @@ def _conditions(
     side_force_spread: SideForceSpread = "depth",
     moment_balance: MomentBalance = "boot",
 ) -> Conditions:
+    """Conditions of the equations from snow, edge angle (rad), load (N), moment (N m) and unloading ratio k_u/H_V."""
     free = moment_balance == "free"
     return Conditions(
         edge_angle=edge_angle,

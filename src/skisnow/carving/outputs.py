@@ -119,6 +119,7 @@ def _radius_over(
 
 
 def _radius_at_boot(at: CarveRequest) -> OutputGrowth | None:
+    """Turn radius (m) at the boot, with its derivatives; None if there is no such circle."""
     circle = _radius_over(at, AT_BOOT)
     return None if circle is None else circle[0]
 
@@ -134,6 +135,7 @@ def _radius_of_chord(at: CarveRequest) -> OutputGrowth | None:
 
 
 def _radius_median(at: CarveRequest) -> OutputGrowth | None:
+    """Median turn radius (m) over the contact, with its derivatives; None without one."""
     ends = _contact_ends(at)
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
     circles = None if ends is None else line.median_circles(ends[0].value, ends[1].value)
@@ -172,6 +174,7 @@ def _contact_ends(at: CarveRequest) -> tuple[OutputGrowth, OutputGrowth] | None:
 
 
 def _contact_length(at: CarveRequest) -> OutputGrowth | None:
+    """Distance (m) between the ends of contact, with its derivatives; None without contact."""
     ends = _contact_ends(at)
     if ends is None:
         return None
@@ -186,16 +189,19 @@ def _mask_of_largest(values: FloatArray) -> FloatArray:
 
 
 def _largest_depth(at: CarveRequest) -> OutputGrowth | None:
+    """Largest depth of the edge (m), with its derivatives."""
     depth = at.solution.edge_depth
     return OutputGrowth(value=float(depth.max()), depth=_mask_of_largest(depth))
 
 
 def _largest_force(at: CarveRequest) -> OutputGrowth | None:
+    """Largest force per length (N/m), with its derivatives."""
     force = at.solution.force_per_length
     return OutputGrowth(value=float(force.max()), force=_mask_of_largest(force))
 
 
 def _deflection_at_boot(at: CarveRequest) -> OutputGrowth | None:
+    """Deflection of the base (m) 0.4 m before the boot, with its derivatives."""
     x = np.array([BOOT_REACH])
     by = np.array([[0.0], [0.0], [1.0], [0.0]])
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
@@ -203,6 +209,7 @@ def _deflection_at_boot(at: CarveRequest) -> OutputGrowth | None:
 
 
 def _grip_utilisation(at: CarveRequest) -> OutputGrowth | None:
+    """Side force over strength × area below the snow, with its derivatives; None without strength or side force."""
     weight, depth, conditions = at.model.stations.weight, at.solution.edge_depth, at.conditions
     if at.strength is None or conditions.side_force == 0.0:
         return None

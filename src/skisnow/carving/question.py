@@ -63,6 +63,7 @@ def require_complete(values: Mapping[str, object]) -> None:
 
 
 def _require_one_snow(names: set[str], rests: bool) -> None:
+    """Reject no snow, two snows, H_V without S_f unless the ski rests, and a site without results."""
     ways = [name for name in ("H_V_N_per_mm3", "results", "published") if name in names]
     choices = Message("Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published")
     if not ways:

@@ -204,6 +204,7 @@ class Equilibrium(Shown):
         )
 
     def _repr_facts(self) -> Facts:
+        """Title with the outcome, and rows with side force, turn radius, contact, depths and warnings."""
         deepest = None if self.edge_depth is None else float(np.max(self.edge_depth)) / MM
         holds = {True: "holds", False: "does not hold", None: "unknown"}[self.holds]
         limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
@@ -327,6 +328,7 @@ def _bridges(station: FloatArray, below: BoolArray) -> bool:
 
 
 def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> float | None:
+    """Mean depth of the afterbody over that of the forebody, both in contact; None if either has no contact."""
     before, behind = (depth > 0.0) & (station > 0.0), (depth > 0.0) & (station < 0.0)
     if not (before.any() and behind.any()):
         return None
@@ -335,6 +337,7 @@ def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> 
 
 
 def _warnings_of_line(line: EdgeLine) -> tuple[str, ...]:
+    """Warnings of a bend or twist too large for the linear beam."""
     warnings = []
     slope, twist = line.greatest_slope(), float(np.max(np.abs(line.bend[1])))
     if slope > LARGE_SLOPE:

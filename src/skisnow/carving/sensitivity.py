@@ -242,6 +242,7 @@ class CarveDerivatives:
 
     @property
     def _rising_stations(self) -> FloatArray:
+        """Stations (m) in rising order, from tail to tip."""
         return self.request.model.stations.station[::-1]
 
     def fields(self, output: str) -> dict[str, FloatArray]:
@@ -263,6 +264,7 @@ class CarveDerivatives:
         }
 
     def _output(self, output: str) -> OutputGrowth | None:
+        """Value and derivatives of an output, None if it does not exist; rejects an unknown name."""
         if output not in OUTPUTS:
             raise ParameterError("unknown output, or one without derivatives: {name}. {allowed}").tag(
                 "unknown_name", name=output, allowed=suggest_and_list(output, OUTPUTS)
@@ -272,6 +274,7 @@ class CarveDerivatives:
         return self._outputs[output]
 
     def _gradient(self, output: str) -> _Gradient:
+        """Derivatives of an output by the equations' quantities; rejects an output without a value."""
         growth, model = self._output(output), self.request.model
         if growth is None:
             raise ParameterError("the carve has no {output}, so it has no derivative.").tag("no_value", output=output)
@@ -331,9 +334,11 @@ class CarveDerivatives:
         return self.point.growth(direction.columns(model), direction.numbers, bent)
 
     def _kink_distance(self, name: str) -> float:
+        """Change of a parameter, in its unit, to the nearest kink of its derivatives; infinite for S_f."""
         return math.inf if name == "snow.S_f_N_per_mm2" else self._growth(name)[4]
 
     def _parameter_derivatives(self, name: str) -> _ParameterDerivatives:
+        """Derivatives of the equations' numbers and of the ski's shape by a parameter."""
         if name not in self._directions:
             if name in CONDITIONS:
                 self._directions[name] = self._condition_derivatives(name)
@@ -346,6 +351,7 @@ class CarveDerivatives:
         return self._directions[name]
 
     def _condition_derivatives(self, name: str) -> _ParameterDerivatives:
+        """Derivatives of the equations' numbers, and of S_f, by a condition in its key's unit."""
         conditions, numbers, strength = self.request.conditions, np.zeros(_COUNT), 0.0
         turns = conditions.side_force > 0.0
         if name == "edge_angle_deg":

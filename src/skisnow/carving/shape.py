@@ -85,6 +85,8 @@ class _Interpolation(NamedTuple):
 
 
 class _NodesAndInterpolation(NamedTuple):
+    """Nodes of a beam (m), and the interpolations at its stations and at its Gauss points."""
+
     node: FloatArray
     stations: _Interpolation
     gauss: _Interpolation
@@ -112,6 +114,7 @@ def _interpolation(station: bytes, place: FloatArray) -> _Interpolation:
 
 @functools.lru_cache(maxsize=16)
 def _interpolation_at(station: bytes, place: tuple[float, ...]) -> _Interpolation:
+    """Interpolation of a ski's tables at places (m)."""
     return _interpolation(station, np.array(place))
 
 
@@ -191,6 +194,7 @@ class ShapeGradient:
         return out
 
     def _sections(self, model: ClampedSki, elements: int) -> FloatArray:
+        """Derivatives by width and base height at the stations, with that by the widest width added."""
         out = self.stations[2:4].copy()
         out[0, widest_station(model.ski, model.clamp_length, elements)] += self.widest
         return out
@@ -256,6 +260,7 @@ def _curvature(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
 
 @functools.lru_cache(maxsize=16)
 def _curvature_between(nodes: bytes) -> tuple[FloatArray, FloatArray]:
+    """Lengths of the elements between nodes (m), and the curvature shapes at their Gauss points."""
     node = np.frombuffer(nodes)
     length = node[:-1] - node[1:]
     return length, curvature_shape(GAUSS_POINTS[None, :], length[:, None])
@@ -333,8 +338,10 @@ def growth_by_tables(
 
 
 def _by_element(model: ClampedSki, u: FloatArray) -> FloatArray:
+    """Displacements of each element's degrees of freedom, shape (elements, dofs); 0 where the beam is held."""
     return np.append(u, 0.0)[model.dof]  # -1: held
 
 
 def _element_lengths(model: ClampedSki) -> FloatArray:
+    """Lengths of the elements (m)."""
     return np.asarray(model.node[:-1] - model.node[1:])

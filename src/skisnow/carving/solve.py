@@ -100,6 +100,7 @@ def refined(
 
 
 def _core_conditions(conditions: Conditions) -> core.CarveConditions:
+    """Conditions for the compiled core, with NumPy numbers converted to Python's."""
     # numbers of NumPy, too, which the core does not know
     numbers: list[Any] = [number.item() if isinstance(number, np.generic) else number for number in conditions[:-1]]
     return core.CarveConditions(*numbers)
@@ -107,6 +108,7 @@ def _core_conditions(conditions: Conditions) -> core.CarveConditions:
 
 @functools.lru_cache(maxsize=32)
 def _core_ski(model: ClampedSki) -> core.CarvedSki:
+    """Ski for the compiled core: stations, stiffness, width at the boot (m), and its bend if pressed onto the snow."""
     known, front = _mesh_rows(model.node.tobytes(), model.dof.tobytes())
     rows = known.copy()
     rows[:, 2], rows[:, 3] = model.stations.width, model.stations.base_height
@@ -163,5 +165,6 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
 
 
 def _contact_span(ski: Ski) -> tuple[float, float]:
+    """Stations (m) of the front and rear end of the contact, within the ski."""
     front, rear = ski.contact_points
     return min(front, float(ski.station[0])), max(rear, float(ski.station[-1]))

@@ -144,6 +144,7 @@ def compare_tracks(
 def _require_options(
     fit: Collection[str], time_from: str | None, known_to: float | None, slope_angle: float | None
 ) -> None:
+    """Reject unknown offsets or time origin, a negative `known_to` (m), and a slope angle (rad) out of range."""
     require_offsets(fit)
     if time_from not in (None, *get_args(TimeFrom)):
         raise ParameterError("time is counted from first_point or clock, not from {time_from!r}").tag(
@@ -169,7 +170,7 @@ def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[i
 def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[str, str], seen: str) -> Comparison:
     """Comparison by all three distances; `seen`: whether heights are used, in words."""
     simulated, measured = lines
-    apart = nearest_offsets(Path(simulated.place), measured)
+    offsets = nearest_offsets(Path(simulated.place), measured)
     back = distance_statistics(nearest_offsets(Path(measured.place), simulated))
     return Comparison(
         simulated=simulated,
@@ -177,7 +178,7 @@ def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[
         names=names,
         seen=seen,
         nearest=_make_distances(
-            "nearest", apart, "all of the measured track lies ahead of the simulated one's ends: nothing is beside it"
+            "nearest", offsets, "all of the measured track lies ahead of the simulated one's ends: nothing is beside it"
         ),
         arc_length=_make_distances("arc_length", arc_length_offsets(simulated, measured), "neither has a length"),
         time=_at_equal_time(simulated, measured, clock),
@@ -185,21 +186,22 @@ def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[
     )
 
 
-def _make_distances(name: str, apart: OffsetSeries | None, otherwise: str, *, origin: str = "") -> Distances:
-    """Distances by the definition with this name; `otherwise` is the reason given if nothing can be compared."""
-    numbers = None if apart is None else distance_statistics(apart)
+def _make_distances(name: str, offsets: OffsetSeries | None, otherwise: str, *, origin: str = "") -> Distances:
+    """Distances by the definition `name`; `otherwise`: reason if there are none; `origin`: zero of the clock."""
+    numbers = None if offsets is None else distance_statistics(offsets)
     definition = DEFINITIONS[name].format(origin=origin)
-    return Distances(definition, apart, numbers, None if numbers else otherwise)
+    return Distances(definition, offsets, numbers, None if numbers else otherwise)
 
 
 def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Distances:
+    """Distances at equal times, or the reason why they cannot be computed."""
     reason = clock.reason or missing_time_reason(simulated, "simulated") or missing_time_reason(measured, "measured")
-    apart = None if reason else time_offsets(simulated, measured, later=clock.ahead)
-    if not reason and apart is None:
+    offsets = None if reason else time_offsets(simulated, measured, later=clock.ahead)
+    if not reason and offsets is None:
         begins = measured.time[0] + clock.ahead - simulated.time[0]
         reason = f"they are not on their way at one time (the measured one begins {begins:.6g} s later); {FIRST_POINTS}"
     otherwise = reason or "the measured track stands still while both are on their way"
-    return _make_distances("time", apart, otherwise, origin=clock.origin)
+    return _make_distances("time", offsets, otherwise, origin=clock.origin)
 
 
 def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparison:
@@ -242,6 +244,7 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
 
 
 def _track_warnings(track: Track, dimensions: int) -> Iterator[str]:
+    """Warnings of points that are not compared, and of inexact places."""
     if without := int((~compared_points(track, dimensions=dimensions)).sum()):
         flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "no place"
         yield f"{track.name}: {without} of {len(track)} points are not compared ({flags})"
@@ -250,6 +253,7 @@ def _track_warnings(track: Track, dimensions: int) -> Iterator[str]:
 
 
 def _frames_sentence(simulated: Track, measured: Track) -> str:
+    """Sentence that two tracks have different frames."""
     return f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; {measured.name}: {measured.frame})"
 
 

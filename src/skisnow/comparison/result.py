@@ -84,6 +84,7 @@ class FittedOffsets(Shown):
     azimuth: float | None = None
 
     def _repr_facts(self) -> Facts:
+        """Title with the fitted offsets: places (m), angle (°) and time (s)."""
         turned = f"{amount(self.turned / DEGREE, '°')} turned, {amount(self.later, 's')} later"
         return Facts(
             f"{', '.join(self.what)}: moved by {', '.join(amount(value, 'm') for value in self.moved)}, {turned}"
@@ -138,6 +139,7 @@ class Comparison(Shown):
     known_to: float = 0.0
 
     def _repr_facts(self) -> Facts:
+        """Title with the names of both tracks, and rows with distances, fitted offsets and warnings."""
         length = amount(self.measured.length, "m")
         rows = (
             ("seen", self.seen),
@@ -176,10 +178,12 @@ def comparison_dict(comparison: Comparison) -> Json:
 
 
 def _distances_of_each_kind(comparison: Comparison) -> Json:
+    """JSON of the distances by each of the three definitions."""
     return {kind: _distances_json(getattr(comparison, kind), comparison.measured.length) for kind in KINDS}
 
 
 def _distances_json(distances: Distances, length: float) -> Json:
+    """JSON of distances: maximum, mean and rms in m and as shares of the track's length (m)."""
     numbers = {} if distances.numbers is None else asdict(distances.numbers)
     metres = {name: numbers.get(name) for name in ("max", "mean", "rms")}
     return {
@@ -194,6 +198,7 @@ def _distances_json(distances: Distances, length: float) -> Json:
 
 
 def _fitted_dict(fitted: FittedOffsets) -> Json:
+    """JSON of the fitted offsets, the second-best alignment (None without one), and the distances before."""
     rival = fitted.rival
     return {
         "what": list(fitted.what),
@@ -218,6 +223,7 @@ def _fitted_dict(fitted: FittedOffsets) -> Json:
 
 
 def _degrees(angle: float | None) -> float | None:
+    """Angle (rad) in degrees; None for None."""
     return None if angle is None else angle / DEGREE
 
 

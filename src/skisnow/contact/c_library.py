@@ -46,6 +46,7 @@ _FOLDER: Final = Path(compiled.__file__).parent
 
 
 def _first_existing(*paths: Path) -> Path:
+    """First of the paths that is a file; FileNotFoundError if there is none."""
     for path in paths:
         if path.is_file():
             return path

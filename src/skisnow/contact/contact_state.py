@@ -78,4 +78,5 @@ class ContactState(Shown):
         return ContactState.from_bytes, (self.to_bytes(),)
 
     def _repr_facts(self) -> Facts:
+        """Title with the size of the stored state in bytes, or that it is of this process."""
         return Facts("of this process" if self._kept is None else f"of {len(self._kept)} bytes")

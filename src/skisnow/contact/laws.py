@@ -44,6 +44,7 @@ class Laws(Shown):
         return {name: None if law is None else name_with_values(law) for name, law in laws.items()}
 
     def _repr_facts(self) -> Facts:
+        """Title with the laws that are given."""
         return Facts(", ".join(f"{name} {law}" for name, law in self.described.items() if law) or "none")
 
 
@@ -69,7 +70,7 @@ class StrengthCallback:
         self.refused: Message | None = None
 
     def __call__(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Both values, or the first that is not finite."""
+        """Strength and thrust, shape (2, n); ``refused`` becomes a message if any is not finite, otherwise None."""
         meets = depth > 0.0
         found = np.zeros((2, len(depth)))
         found[:, meets] = self.law.stress_and_thrust(depth[meets], edge_angle[meets])

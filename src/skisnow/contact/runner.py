@@ -52,6 +52,7 @@ class Runner(Shown):
     edge_shape: tuple[float, float, float, float] = (0.0, 0.0, math.pi / 2.0, 0.0)
 
     def _repr_facts(self) -> Facts:
+        """Title with the length (m), the range of half widths (mm) and the number of nodes."""
         length = amount(float(self.position[0] - self.position[-1]), "m")
         nodes = "rigid" if self.nodes is None else f"{len(self.nodes)} nodes"
         return Facts(f"{length} long, half width {ends(self.half_width, 'mm', factor=MM)}, {nodes}")
@@ -78,6 +79,7 @@ class Runner(Shown):
         self._check_nodes()
 
     def _check_nodes(self) -> None:
+        """Convert the nodes to an array; they must fall from the tip to the tail of the runner."""
         if self.nodes is None:
             return
         nodes = np.array(self.nodes, float)

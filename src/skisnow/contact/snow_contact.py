@@ -48,6 +48,7 @@ class ContactForces(Shown):
     beam_loads: tuple[FloatArray, ...]
 
     def _repr_facts(self) -> Facts:
+        """Title, and a row with force (N) and moment (N m) for each runner."""
         rows = tuple((f"runner {k}", _wrench_in_words(each)) for k, each in enumerate(self.wrench))
         return Facts(f"on {len(self.wrench)} runners", rows)
 
@@ -166,6 +167,7 @@ class SnowContact(Shown):
             self.compiled.set_penetration(PressureCallback(law), np.array(law.bends, float), law.along_base_normal)
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of runners, the instruction set and the snow."""
         return Facts(
             f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._repr_facts().title}"
         )
@@ -300,6 +302,7 @@ class SnowContact(Shown):
         return where, axes, moves, dt, self._checked_beams("beam_dofs", beams), self._checked_beams("beam_rates", rates)
 
     def _checked_beams(self, name: str, beams: Beams) -> list[FloatArray] | None:
+        """Arrays of the beams' nodes, one for each runner, shape (nodes, 3); None for None."""
         if beams is None:
             return None
         if len(beams) != len(self.runners):
@@ -311,5 +314,6 @@ class SnowContact(Shown):
 
 
 def _wrench_in_words(wrench: FloatArray) -> str:
+    """Force (N) and moment (N m) as a text."""
     force, moment = (", ".join(f"{each:.4g}" for each in part) for part in (wrench[:3], wrench[3:]))
     return f"force ({force}) N, moment ({moment}) N m"

@@ -116,6 +116,8 @@ class SnowField(Shown):
     compiled: core.Snow = field(init=False, repr=False)
 
     def _repr_facts(self) -> Facts:
+        """Title with hardness, stress, unloading ratio and laws."""
+
         def in_words(value: float | Grid, size: float, unit: str) -> str:
             return "over the place" if isinstance(value, Grid) else amount(value / size, unit)
 
@@ -159,6 +161,7 @@ class SnowField(Shown):
         object.__setattr__(self, "compiled", self._core_snow())
 
     def _reject_second_side_force(self) -> None:
+        """Reject a shear law or a stress next to a penetration law that bears the side force itself."""
         law = self.penetration
         if law is None or not law.along_base_normal:
             return
@@ -195,6 +198,7 @@ class SnowField(Shown):
             ).tag("contradiction", kind=type(self.penetration).__name__)
 
     def _core_snow(self) -> core.Snow:
+        """Snow for the compiled core, with its grids and laws."""
         snow = core.Snow()
         snow.hardness, snow.strength = _core_grid(self.snow_hardness), _core_grid(self._strength())
         snow.friction_share = _core_grid(self.friction_share)
@@ -207,6 +211,7 @@ class SnowField(Shown):
         return snow
 
     def _core_rate_law(self) -> core.RateLaw:
+        """Damping and delayed deepening for the compiled core."""
         out = core.RateLaw()
         out.damping, out.delayed_share = self.damping, self.delayed_share
         out.retardation, out.spacing = self.retardation_time, self.delayed_spacing
@@ -249,6 +254,7 @@ class SnowField(Shown):
         return strength * share
 
     def _core_shear_law(self) -> core.ShearLaw:
+        """Parameters of the shear law for the compiled core."""
         law, out = self.shear, core.ShearLaw()
         out.residual_ratio, out.weakening = self.residual_ratio, self.slip_weakening
         out.loaded_only = self.shear_bearing == "loaded-height"
@@ -277,10 +283,12 @@ class SnowField(Shown):
 
 
 def _minimum(value: float | Grid) -> float:
+    """Smallest value of a grid, or the number itself."""
     return float(value.values.min()) if isinstance(value, Grid) else value
 
 
 def _maximum(value: float | Grid) -> float:
+    """Largest value of a grid, or the number itself."""
     return float(value.values.max()) if isinstance(value, Grid) else value
 
 

@@ -120,11 +120,13 @@ class Descent:
         return z
 
     def _deviations_and_distances(self, z: FloatArray) -> FloatArray:
+        """Deviations from targets and limits at a design z, then distances to the linear constraints."""
         search, (matrix, lowest) = self.search, self.search.linear
         values = [search.values(goal, z) for goal in (*search.targets, *search.limits)]
         return np.concatenate([*values, matrix @ z - lowest])
 
     def _linearise(self, z: FloatArray) -> _LinearModel:
+        """Linear model at a design z: deviations and their derivatives."""
         search = self.search
         growths = [search.growth(goal, z) for goal in (*search.targets, *search.limits)]
         return _LinearModel(z, self._deviations_and_distances(z), np.concatenate([*growths, search.linear[0]]))

@@ -160,6 +160,7 @@ class Evaluator:
 
 
 def _output(point: CarveDerivatives, name: str) -> float:
+    """Value of an output of a carve; SolverError if it does not exist or is not finite."""
     value = point.output(name)
     if value is None or not math.isfinite(value):
         raise SolverError("the carve has no {output}.").tag("no_value", output=name)

@@ -90,6 +90,8 @@ def measured_ski(measured: Measured) -> MeasuredSki:
 
 
 class _SkiMaker:
+    """Ski from measured tables and tests; what was not measured is taken from a similar ski and noted."""
+
     def __init__(self, measured: Measured) -> None:
         self._measured = measured
         self._like = read_ski(measured.like)
@@ -131,6 +133,7 @@ class _SkiMaker:
         )
 
     def _note_assumption(self, what: Message) -> None:
+        """Record something that was assumed instead of measured."""
         self._assumed.append(what)
 
     def _column(self, *names: str) -> tuple[FloatArray, ...] | None:
@@ -141,6 +144,7 @@ class _SkiMaker:
         return tuple(joined) if joined.size else None
 
     def _length_of_ski(self) -> float:
+        """Length (m), as given or from the table of widths; rejects a ski without either."""
         length = self._measured.length
         if length is None and self._width is not None:
             length = float(np.ptp(self._width[0])) * MM
@@ -233,6 +237,7 @@ class _SkiMaker:
         return station if known.stations_from == "tail" else self._length - station
 
     def _station_table(self, column: tuple[FloatArray, ...], unit: float, layout: Layout) -> StationTable:
+        """Measured column in SI over the station, from tip to tail."""
         station = self._from_tail(column[0]) + layout.tail
         order = np.argsort(-station)
         return StationTable(station[order], column[1][order] * unit)
@@ -265,6 +270,7 @@ class _SkiMaker:
         )
 
     def _stiffness_along_ski(self, stiffness: Stiffness | None, name: str, layout: Layout) -> StationFunction:
+        """Stiffness over the station: measured, or that of the similar ski, which is noted as assumed."""
         if stiffness is not None:
             return StationTable(stiffness.station, stiffness.value).at
         words = {"bending_stiffness": "EI", "torsional_stiffness": "GJ"}

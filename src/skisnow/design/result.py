@@ -112,6 +112,7 @@ class Design(Shown):
     equilibria: int
 
     def _repr_facts(self) -> Facts:
+        """Title that says if all goals are reached, and a row with the design's values."""
         values = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
         return Facts("all goals reached" if self.reached else "not all goals reached", (("design", values),))
 
@@ -191,6 +192,7 @@ def _digits(value: Any) -> Any:
 
 
 def _rounded_value(key: str, value: Any) -> Any:
+    """Number or list of a ski's key, rounded as it would be manufactured; other values unchanged."""
     if isinstance(value, list):
         return [_rounded_value(key, item) for item in value]
     if not isinstance(value, float):
@@ -199,6 +201,7 @@ def _rounded_value(key: str, value: Any) -> Any:
 
 
 def _output_rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tuple[DesignRow, ...]:
+    """Row of each output by condition: before, after, after rounding (None: no value), change (%), interval."""
     evaluator = search.evaluator
     skis = [search.evaluator.task.ski, ski_of_keys(keys), ski_of_keys(rounded)]
     rows = []
@@ -227,6 +230,7 @@ def _slips(rows: tuple[DesignRow, ...]) -> list[Message]:
 
 
 def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
+    """Sentences about the goals that the design z misses, with its values and the deviation (%)."""
     out = []
     for goal in search.evaluator.task.goals:
         values = search.evaluator.goal_values(goal, z)
@@ -246,6 +250,7 @@ def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
 
 
 def _active_bounds_and_constraints(search: Search, z: FloatArray) -> list[Message]:
+    """Sentences about the variables at a bound and the constraints at their limit."""
     out = []
     for variable, share in zip(search.evaluator.task.variables, z, strict=True):
         for at, bound in ((share, variable.lowest), (1.0 - share, variable.highest)):
@@ -280,6 +285,7 @@ def _constraints_at(search: Search, z: FloatArray, *, broken: bool) -> list[Mess
 
 
 def _optima(search: Search, starts: tuple[Start, ...]) -> tuple[Optimum, ...]:
+    """Different optima of the starts, best first, each with the share of starts that found it."""
     optima: list[tuple[Start, int]] = []
     for start in sorted((start for start in starts if start.end is not None), key=lambda each: each.result):
         for n, (first, count) in enumerate(optima):

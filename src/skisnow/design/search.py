@@ -89,6 +89,7 @@ def searched_starts(
 
 
 def _search_from(search: Search, begin: FloatArray, z: FloatArray, *, polish: bool) -> Start:
+    """Search from a start z; if no ski or equilibrium exists on the way, its end is None and its result infinite."""
     before = search.evaluator.equilibria
     try:
         end = Descent(search).run(z, polish=polish)

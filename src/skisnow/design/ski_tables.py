@@ -106,6 +106,7 @@ def read_ski_table(path: Path, mapped: Mapped) -> dict[str, FloatArray]:
 def _read_columns(
     path: Path, sheet: Sheet, header: int, places: Mapping[str, int], mapped: Mapped
 ) -> dict[str, FloatArray]:
+    """Numbers of the columns, in the units of their headings or the row below; NaN for blank cells."""
     below = {place: sheet.cell(header + 1, place).strip("[]()") for place in places.values()}
     has_units = any(map(known_unit, below.values()))
     rows = [
@@ -143,6 +144,7 @@ def _factor(path: Path, heading: str, unit: str, name: str) -> float:
 
 
 def _read_number(path: Path, sheet: Sheet, row: int, place: int, mark: str, factor: float) -> float:
+    """Number of a cell times `factor`, NaN if it is blank; rejects text and too large numbers."""
     cell = sheet.cell(row, place)
     value = factor * number(cell, "." if (row, place) in sheet.fractions else mark) if cell else np.nan
     if cell and not abs(value) <= _LARGEST:

@@ -134,7 +134,7 @@ def read_design(path: str | Path) -> DesignTask:
 
 
 def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) -> DesignTask:
-    """Check a task of the form of DESIGN.toml."""
+    """Check the keys of DESIGN.toml and build the task; `sources`: cache that reads its skis and snows."""
     numbers = checked_table(DesignTask, values, "task", further=_KINDS)
     for name, (kind, item) in _KINDS.items():
         value: Any = values.get(name)
@@ -173,6 +173,7 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
 
 
 def _require_variable(place: str, ski: Ski, name: str) -> None:
+    """Reject a name that is no variable of the ski."""
     of_file = (parameter.removeprefix("ski.") for parameter in shape_parameters(ski) if parameter.startswith("ski."))
     allowed = (*of_file, *COMBINED)
     if name not in allowed:
@@ -182,6 +183,7 @@ def _require_variable(place: str, ski: Ski, name: str) -> None:
 
 
 def _read_variable(ski: Ski, name: str, bounds: Any) -> Variable:
+    """Variable of the design with its bounds; rejects a lower bound that is not below the upper one."""
     _require_variable("variables", ski, name)
     is_pair = isinstance(bounds, list | tuple) and len(bounds) == 2 and all(map(_is_number, bounds))
     if not is_pair or bounds[0] >= bounds[1]:
@@ -192,10 +194,12 @@ def _read_variable(ski: Ski, name: str, bounds: Any) -> Variable:
 
 
 def _is_number(value: object) -> bool:
+    """True for a finite number; False for True, False and other values."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _read_conditions(number: int, table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+    """Carves of an entry of [[conditions]]; errors name its number."""
     try:
         questions = _read_questions(table, ski, sources)
         for question in questions:
@@ -206,6 +210,7 @@ def _read_conditions(number: int, table: Mapping[str, Any], ski: str, sources: S
 
 
 def _read_questions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+    """Carves of a table: all combinations of its lists, and the ends of intervals if it asks for them."""
     table = dict(table)
     over_intervals = table.pop(INTERVALS, False)
     if not isinstance(over_intervals, bool):
@@ -243,6 +248,7 @@ def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQues
 
 
 def _read_goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
+    """Goal of an entry: an output with one of target, at_most and at_least, in the chosen conditions."""
     place = f"goals, {number}"
     goal: Goal = build_declared(Goal, checked_table(Goal, table, place))
     if goal.output not in (*OUTPUTS, FORCE_ALONG_EDGE):
@@ -271,6 +277,7 @@ def _read_goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
 
 
 def _read_constraint(number: int, table: Mapping[str, Any], ski: Ski) -> Constraint:
+    """Linear constraint: a sum of variables with factors, and at_least or at_most."""
     place = f"constraints, {number}"
     limits = dict(table)
     terms = limits.pop("terms", None)

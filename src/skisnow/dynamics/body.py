@@ -176,6 +176,7 @@ class BootPose(Shown):
         return pose
 
     def _repr_facts(self) -> Facts:
+        """Title, and rows with place (m), angles (°) and speeds."""
         edge, pitch, heading = (amount(angle / DEGREE, "°") for angle in angles_of(self.axes))
         place = ", ".join(f"{each:.4g}" for each in self.place)
         speed, turning = (float(np.linalg.norm(each)) for each in (self.velocity, self.turning))

@@ -102,6 +102,7 @@ class Grid(ShownFields):
 
 
 def _require_even(name: str, places: FloatArray) -> None:
+    """Reject places (m) that are no row, or that do not rise in equal steps."""
     if places.ndim != 1 or not len(places):
         raise ParameterError("Grid: {name} must be a row of one place or more, its shape is {shape}").tag(
             "wrong_shape", name=name, shape=str(places.shape)

@@ -27,6 +27,7 @@ LIKELY_LENGTH_MM: Final = (2.0, 5000.0)
 
 
 def _length_quantity(name: str, meaning: str) -> Quantity:
+    """Quantity for a length in mm, above 0 and with the usual range of tools."""
     return Quantity(name, meaning, lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
 
 
@@ -191,6 +192,7 @@ class Disc(Tool):
 
     @property
     def _face_area(self) -> float:
+        """Area of the disc (m²)."""
         return float(np.pi * self.diameter**2 / 4.0)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
@@ -233,6 +235,7 @@ class LyingCylinder(Tool):
         require_declared(self)
 
     def _half_chord(self, e: FloatArray) -> FloatArray:
+        """Half width (m) of the section at depth e (m): √(e (2 R - e)), at most R."""
         chord = np.sqrt(np.maximum(e * (2.0 * self.radius - e), 0.0))
         half: FloatArray = np.where(e < self.radius, chord, self.radius)
         return half

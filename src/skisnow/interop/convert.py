@@ -93,6 +93,7 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
 
 
 def _kind_of_file(path: Path) -> str:
+    """Format of a file by its ending, a folder is a campaign; rejects an unknown ending."""
     if path.is_dir():
         return CAMPAIGN
     ending = path.suffix.lower()
@@ -130,6 +131,7 @@ def _pit_of_recording(source: Path) -> SnowPit:
 
 
 def _recording_as_layers(source: Path, target: Path, options: ConvertOptions) -> None:
+    """Write mean forces (N) of a SnowMicroPen recording in layers of 1 mm below the surface as CSV."""
     if options.layers_to is None:
         raise ParameterError("layers need a depth: give --layers-to-mm").tag("missing")
     profile = read_snow_micro_pen(source)
@@ -157,6 +159,7 @@ def _to_caaml(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
 
 
 def _c3d_as_trc(source: Path, target: Path, options: ConvertOptions) -> None:
+    """Write the markers of a C3D file as TRC, and report omitted points."""
     markers = read_c3d(source)
     if markers.omitted and options.report is not None:
         names = ", ".join(markers.omitted)

@@ -113,6 +113,7 @@ def _inertial(ski: Ski, near: float, far: float, origin: tuple[float, float] = (
 
 
 def _box_xml(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0.0, 0.0)) -> str:
+    """MuJoCo geometry of a box that follows the ski's base from `near` to `far` (m); only to be shown."""
     low, high = sorted((near, far))
     middle = (low + high) / 2.0
     at = ski.at(np.array([low, middle, high]))
@@ -170,6 +171,7 @@ class SnowForces:
     _accepted: float | None
 
     def _require_site_index(self, model: Any, name: str) -> int:
+        """Index of a site in the model; rejects an unknown name."""
         index = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
         if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))

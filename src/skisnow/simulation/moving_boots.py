@@ -51,6 +51,7 @@ class BootMoment(Shown):
     wrench: FloatArray
 
     def _repr_facts(self) -> Facts:
+        """Title with the time and its end (s), and rows with distance, speed and forces of the boots."""
         speed, bears = float(np.linalg.norm(self.velocity[:3])), np.linalg.norm(self.wrench[:, :3], axis=1)
         rows = (
             ("run", f"{amount(self.distance, 'm')}, now at {amount(speed, 'm/s')}"),
@@ -117,6 +118,7 @@ class BootDrive:
         self._last = poses
 
     def _next_poses(self, dynamics: Dynamics, until: float, distance: float) -> Sequence[BootPose]:
+        """Poses that the control returns for this moment, one for each ski; rejects anything else."""
         moment = BootMoment(
             dynamics.time, until, distance, dynamics.position, dynamics.rotation, dynamics.velocity, dynamics.boots,
             dynamics.boot_wrench,

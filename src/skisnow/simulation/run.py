@@ -246,6 +246,7 @@ class Run(Shown):
         return run_dataset(self)
 
     def _repr_facts(self) -> Facts:
+        """Title with the outcome, and rows with laws, length, speed, heading, radius, depth, energy and effort."""
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
         law_names = ", ".join(f"{name} {law.partition('(')[0]}" for name, law in self.given_laws.items() if law)
         rows = (
@@ -285,6 +286,7 @@ class Run(Shown):
         return float(self.energies["kinetic"][0]) + lost + taken + float(potential[0] - potential.min())
 
     def _energy_or_zero(self, name: str) -> FloatArray:
+        """Energy over time (J) by its name; zeros if the run has none."""
         return self.energies.get(name, np.zeros(len(self.time)))
 
     @property
@@ -313,5 +315,6 @@ class Run(Shown):
 
 
 def _max_speed_text(values: FloatArray) -> str:
+    """Largest finite speed as a text in m/s."""
     finite = values[np.isfinite(values)]
     return amount(float(finite.max()) if finite.size else None, "m/s")

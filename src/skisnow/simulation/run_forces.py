@@ -217,4 +217,5 @@ def _edge_direction(
 
 
 def _dot(vectors: FloatArray, axes: FloatArray) -> FloatArray:
+    """Dot products of vectors and axes over times and skis, shape (n, k)."""
     return np.asarray(np.einsum("nka,nka->nk", vectors, axes))

@@ -65,6 +65,7 @@ class Record:
         return _OUTCOMES.get(ended)
 
     def _current_moment(self) -> Moment:
+        """State of the run at this moment; without moving boots, the body's own row gives place and attitude."""
         setup, row = self.setup, self.setup.dynamics.moment
         if setup.drive is not None:
             return Moment(setup.place, setup.attitude, setup.velocity, row)

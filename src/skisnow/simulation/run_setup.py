@@ -191,6 +191,7 @@ class Setup:
         return normals_of(self.scenario.slope, x, y)
 
     def _slope_at_boots(self) -> tuple[float, FloatArray]:
+        """Height (m) and normal of the slope at the boots; on a plane 0 and the upward axis."""
         if isinstance(self.scenario.slope, Plane):
             return 0.0, _UP
         x, y = self.place[:2].tolist()
@@ -249,6 +250,7 @@ def weight_meets_base(setup: Setup) -> tuple[float, float]:
 
 
 def _boot_drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
+    """Drive of the boots by a function, the scenario's skier or its file; None without one; rejects two of them."""
     if boots is not None:
         if scenario.boots is not None:
             raise ParameterError("the boots move by boots.file and by a function; give one of them").tag(
@@ -304,6 +306,7 @@ def _mesh(solver: Solver, length: float, wavelength: float) -> tuple[int, float]
 
 
 def _step_control(scenario: Scenario) -> StepControl:
+    """Step sizes (s) and tolerance of the scenario's solver; the fast method has larger ones."""
     solver = scenario.solver
     tolerance = solver.tolerance * (FAST if solver.method == "fast" else 1.0)
     longest = FAST_LONGEST if solver.method == "fast" else LONGEST_STEP
@@ -334,6 +337,7 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
 
 
 def _snow_field(scenario: Scenario, laws: Laws) -> SnowField:
+    """Snow of a scenario, with its snow map and with the given laws instead of the scenario's."""
     contact = scenario.contact
     over_place = contact.snow_map
     carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
@@ -375,6 +379,7 @@ def _strength_share(snow_map: SnowMap | None) -> float | Grid:
 
 
 def _gravity_vector(scenario: Scenario) -> FloatArray:
+    """Gravity (m/s²) in the scenario's axes, which are inclined on a plane slope."""
     slope, g = scenario.slope, scenario.gravity
     if isinstance(slope, Plane):
         return np.array([g * math.sin(slope.angle), 0.0, -g * math.cos(slope.angle)])

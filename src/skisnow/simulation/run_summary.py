@@ -118,6 +118,7 @@ def run_warnings(run: Run) -> tuple[str, ...]:
 
 
 def _provenance_json(files: Iterable[Path]) -> dict[str, Any]:
+    """JSON of a run's inputs: hashes of files, versions and the present time."""
     packages = ("skisnow", "numpy", "scipy")
     return {
         "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},

@@ -252,6 +252,7 @@ class _Watch:
         return self.outcome is not None
 
     def _end_behind_last_gate(self) -> None:
+        """End the run as finished if the body is far enough behind the course's last gate."""
         if self._course.is_over(self.setup.place, CLEAR):
             self.outcome = "finished"
 
@@ -288,6 +289,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
 
 
 def _current_outcome(setup: Setup, flying: float) -> Outcome | None:
+    """Outcome that ends the run now, such as a fall or a flight of `flying` seconds; None: it goes on."""
     (leaning, pitching), skier = setup.tilt, setup.scenario.skier
     if skier is not None and leaning > TIPPED and setup.touches:
         return "fell"

@@ -56,6 +56,7 @@ class Refinement(Shown):
     outcome: Outcome
 
     def _repr_facts(self) -> Facts:
+        """Title with the changed key, its two values and the shift of the end (cm)."""
         moves = amount(None if self.end_moves is None else self.end_moves / CM, "cm")
         return Facts(f"{self.key} {amount(self.was)} to {amount(self.now)}: the end moves by {moves}, {self.outcome}")
 
@@ -148,6 +149,7 @@ def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
 
 
 def _slightly_changed_runs(run: Run, simulate: Simulate) -> Iterator[Refinement]:
+    """Largest shift of the run's end for each slightly changed input; stops if a run is interrupted."""
     for key, scenarios in nudged_scenarios(run).items():
         moved: list[Refinement] = []
         for scenario in scenarios:
@@ -196,20 +198,24 @@ def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str
 
 
 def _used_setting(run: Run, key: str) -> float:
+    """Setting of the solver that a run used, in its key's unit."""
     numbers = run.numbers
     chosen = replace(run.scenario.solver, elements=round(numbers["elements"]), line_spacing=numbers["line_spacing_m"])
     return _solver_number(chosen, key)
 
 
 def _scenario_number(scenario: Scenario, key: str) -> float:
+    """Number of a scenario's key, in the key's unit."""
     return float(values_of(scenario)[key])
 
 
 def _solver_number(solver: Solver, key: str) -> float:
+    """Number of a solver's setting, in its key's unit."""
     quantity = SCENARIO_KEYS[key]
     value: float = quantity.in_unit(getattr(solver, quantity.field))
     return value
 
 
 def _distance_of_ends(run: Run, finer: Run) -> float | None:
+    """Distance (m) between the last places of two runs; None if it is not finite."""
     return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

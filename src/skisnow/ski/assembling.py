@@ -58,6 +58,7 @@ class ArcOutline:
 
     @property
     def _sidecut_width(self) -> float:
+        """Tip width plus tail width less twice the waist width (m)."""
         return self.tip_width + self.tail_width - 2.0 * self.waist_width
 
 
@@ -96,6 +97,7 @@ class _Parabola:
 
 
 def _fit_parabola(table: StationTable, layout: Layout) -> _Parabola:
+    """Parabola fitted to the widths within the sidecut length; rejects too few rows, or over less than half of it."""
     front, rear = layout.widest_points
     inside = (table.station <= front + _AT_THE_END) & (table.station >= rear - _AT_THE_END)
     station = table.station[inside]
@@ -166,6 +168,7 @@ def assembled_ski(
 
 
 def _make_grid(layout: Layout, stations: FloatArray) -> FloatArray:
+    """The table's stations (m) if they are dense enough, otherwise denser ones that include them."""
     if stations.size and np.max(-np.diff(stations)) <= GREATEST_SPACING + _SAME_PLACE:
         return stations
     return _dense_grid(layout, tuple(stations.tolist()))
@@ -173,6 +176,7 @@ def _make_grid(layout: Layout, stations: FloatArray) -> FloatArray:
 
 @functools.lru_cache(maxsize=16)
 def _dense_grid(layout: Layout, stations: tuple[float, ...]) -> FloatArray:
+    """Stations (m) from tip to tail that include the given and the characteristic ones, with limited spacing."""
     own = [layout.tip, *layout.widest_points, *layout.contact_points, layout.middle, 0.0, layout.tail]
     places = np.unique(np.clip([*own, *stations], layout.tail, layout.tip))[::-1]
     places = places[np.append(True, -np.diff(places) > _SAME_PLACE)]

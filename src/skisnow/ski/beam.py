@@ -283,6 +283,7 @@ class _Mesh(NamedTuple):
 def _make_mesh(
     front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool, zones: tuple[_Zone, ...]
 ) -> _Mesh:
+    """Mesh of a beam from `front` to `rear` (m) with stations and shape functions; without a clamp if `bedded`."""
     node = _place_nodes(front, rear, clamp_length, elements, bedded=bedded, zones=zones)
     dof, size = _number_dofs(node, 0.0 if bedded else clamp_length)
     length = node[:-1] - node[1:]
@@ -343,6 +344,7 @@ def beam_at_stations(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, Floa
 def _place_nodes(
     front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool, zones: tuple[_Zone, ...] = ()
 ) -> FloatArray:
+    """Stations of the nodes (m) from front to rear, with ends of clamp and zones, and closer nodes in zones."""
     half, spacing = clamp_length / 2.0, (front - rear) / elements
     places = {front, half, -half, rear, *((0.0,) if bedded else ()), *itertools.chain(*zones)}
     nodes = [np.array([front])]
@@ -367,6 +369,7 @@ def _end_zones(ski: Ski, clamp_length: float) -> tuple[_Zone, ...]:
 
 
 def _number_dofs(node: FloatArray, clamp_length: float) -> tuple[IntArray, int]:
+    """Degrees of freedom of each element (-1: held by the clamp), and the number of free ones."""
     free = np.abs(node) > clamp_length / 2.0 + 1e-12
     number = np.where(free, DOFS_PER_NODE * (np.cumsum(free) - 1), -DOFS_PER_NODE)
     dof = number[:, None] + np.arange(DOFS_PER_NODE)

@@ -119,6 +119,7 @@ def values_at(ski: Ski, station: FloatArray) -> dict[str, FloatArray]:
 
 
 def _edited_curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
+    """Column of a ski after an edit: multiplied by a factor, then changed to given values at stations."""
     factor = edit.factors.get(column, 1.0)
     curve = factor * np.asarray(getattr(ski, EDITED_COLUMNS[column]))
     if column == "width_mm" and (deeper := edit.factors.get(SIDECUT, 1.0)) != 1.0:
@@ -141,6 +142,7 @@ def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
 
 
 def _require_edit(edit: SkiEdit) -> None:
+    """Reject factors and values of an edit that are out of range; NaN stands for no change."""
     for column, factor in edit.factors.items():
         if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
             raise ParameterError(
@@ -358,6 +360,7 @@ def _growth_of_table(table: str, growth: FloatArray) -> TableGrowth:
 
 
 def _layout_of(keys: SkiFile) -> Layout:
+    """Stations and lengths (m) from a ski's keys; a missing length counts as 0."""
     return layout_of_lengths(
         length=keys.length or 0.0,
         running_length=keys.running_length or 0.0,
@@ -368,6 +371,7 @@ def _layout_of(keys: SkiFile) -> Layout:
 
 
 def _outline_of(keys: SkiFile, layout: Layout) -> ArcOutline:
+    """Outline through tip, waist and tail width (m) of a ski's keys."""
     tip, waist, tail = (width or 0.0 for width in (keys.tip_width, keys.waist_width, keys.tail_width))
     return ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=keys.tip_end_width)
 
@@ -382,6 +386,7 @@ def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArr
 
 
 def _stiffness_table(keys: SkiFile, part: str, layout: Layout) -> StationTable:
+    """Stiffness along the ski from the keys; rigid if they list none."""
     listed = getattr(keys, SKI_KEYS[part].field)
     return stiffness_table(RIGID if listed is None else listed, keys.stiffness_station, layout)
 
@@ -434,7 +439,7 @@ def varied_ski(ski: Ski, name: str, change: float) -> Ski:
 
 @functools.lru_cache(maxsize=64)
 def parsed_keys(ski: Ski) -> SkiFile:
-    """Keys of a ski in SI; rejects a ski whose tables were changed after it was read."""
+    """Keys of a ski in SI; rejects a ski without keys, or with tables that differ from its keys."""
     if ski in MADE_OF_KEYS:
         return MADE_OF_KEYS[ski]
     own = ski_of_keys(ski.keys or {}, like=ski)

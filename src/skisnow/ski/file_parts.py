@@ -92,7 +92,7 @@ class FileValues:
         if self.table.keys() >= set(STIFFNESSES):
             self.refuse_together(["stiffness_station_mm"], Message("a table with both stiffnesses"))
         said = self.said
-        layout = self._lengths_from_table() if self.table else self._lengths_from_keys()
+        layout = self._layout_from_table() if self.table else self._layout_from_keys()
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
         ski = assembled_ski(
             layout,
@@ -142,7 +142,8 @@ class FileValues:
             ).tag("out_of_range", value=self.shown(TIP_END), width=tip * 1e3)
         return ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end).width_at
 
-    def _lengths_from_keys(self) -> Layout:
+    def _layout_from_keys(self) -> Layout:
+        """Stations and lengths of the ski from the file's length keys; rejects less than 2.5 tip widths."""
         length = self.needed("length_mm")
         least = _LEAST_LENGTH_IN_WIDTHS * (self.said.tip_width or 0.0)
         if length < least:
@@ -158,7 +159,8 @@ class FileValues:
             boot_position=self.said.boot_position,
         )
 
-    def _lengths_from_table(self) -> Layout:
+    def _layout_from_table(self) -> Layout:
+        """Stations and lengths of the ski from its table; rejects another length in length_mm, and a tail overhang."""
         self.refuse_together(["tail_overhang_mm"], Message("a table, which reaches from tip to tail"))
         station = self.table["station_m"].station
         length, reach = self.said.length, float(station[0] - station[-1])
@@ -174,12 +176,14 @@ class FileValues:
         )
 
     def _base(self) -> BaseShape | StationFunction:
+        """Base height over the station: the table's column, or the keys' shape; rejects both together."""
         if "base_height_mm" in self.table:
             self.refuse_together(BASE, Message("the column {column}", column="base_height_mm"))
             return self.table["base_height_mm"].at
         return self.said.base
 
     def _stiffness(self, key: str, layout: Layout) -> StationFunction:
+        """Stiffness over the station from rigid, a column or a list; rejects two of them."""
         if self.said.rigid:
             self.refuse_together(LISTS, "rigid")
             if key in self.table:
@@ -200,6 +204,7 @@ class FileValues:
             ) from error
 
     def _warn_of_lengths(self, ski: Ski) -> None:
+        """Warn if running or sidecut length is much shorter than the ski."""
         for key, length in (("running_length_mm", ski.running_length), ("sidecut_length_mm", ski.sidecut_length)):
             if length < _LEAST_SHARE_OF_LENGTH * ski.length:
                 warnings.warn(
@@ -236,4 +241,5 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
 
 @functools.lru_cache(maxsize=32)
 def _build_base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
+    """Base shape from its keys and values."""
     return build_declared(BaseShape, dict(values))

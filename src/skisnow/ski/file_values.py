@@ -34,6 +34,7 @@ def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
 
 
 def _remedy_text(value: object, quantity: Quantity) -> Message:
+    """Advice for a rejected value: quotes, brackets, or the unit that the numbers suggest."""
     numbers: list[Any] = value if isinstance(value, list) else [value]
     if any(isinstance(number, bool) or not isinstance(number, int | float) for number in numbers):
         if quantity.kind in ("text", "switch"):
@@ -46,6 +47,7 @@ def _remedy_text(value: object, quantity: Quantity) -> Message:
 
 
 def _is_usual(value: float, quantity: Quantity) -> bool:
+    """True if a value is in the quantity's usual range, or if it has none."""
     return quantity.usual is None or quantity.usual[0] <= value <= quantity.usual[1]
 
 

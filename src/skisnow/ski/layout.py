@@ -224,6 +224,7 @@ class BaseShape:
         return _height(self, np.asarray(station, float).tobytes(), layout).copy()
 
     def _height_over_contact_points(self, station: FloatArray, layout: Layout) -> FloatArray:
+        """Height (m) over the line through the contact points; rejects rockers that leave too little of the base."""
         front, rear = layout.contact_points
         foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
         if foremost - hindmost < LEAST_CONTACT:
@@ -274,6 +275,7 @@ class _End:
     given_height: float | None
 
     def rise(self, distance: FloatArray) -> FloatArray:
+        """Rise (m) at a distance (m) outwards from the inner end of the rocker; rejects a height without a length."""
         if self.rocker_height > 0 and not self.rocker_length > 0:
             raise ParameterError(
                 "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. State its length "
@@ -285,6 +287,7 @@ class _End:
 
     @property
     def _slope(self) -> float:
+        """Slope of the base at the rocker's outer end; 0 without a rocker."""
         return 2.0 * self.rocker_height / self.rocker_length if self.rocker_length > 0 else 0.0
 
     def _outer_curvature(self) -> float:

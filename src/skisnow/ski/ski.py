@@ -181,6 +181,7 @@ class Ski(Shown):
         return Facts(f"{self.name!r}: {self.length:.4g} m, {widths} mm, {radius}, {self.mass:.4g} kg")
 
     def _notebook_facts(self) -> Facts:
+        """Title with the name, and rows with length, widths, radius, stiffness and mass."""
         middle = int(np.argmin(np.abs(self.station)))
         rows = (
             ("length", amount(self.length, "m")),
@@ -395,6 +396,7 @@ def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> flo
 
 
 def _pratt_curvature(x: FloatArray, y: FloatArray) -> float:
+    """Curvature (1/m) of the circle fitted to points by Pratt's method."""
     points = np.column_stack([x**2 + y**2, x, y, np.ones_like(x)])
     constraint = np.array([[0.0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
     residuals, circles = np.linalg.eig(np.linalg.solve(constraint, points.T @ points / len(x)))

@@ -109,12 +109,14 @@ def ski_names() -> tuple[str, ...]:
 
 
 def _no_such_ski(name: str) -> ParameterError:
+    """Error for a name that the catalogue lacks, with a similar name."""
     return ParameterError("unknown ski {name!r}. {allowed} Any other ski is read from a file ending in .toml.").tag(
         "unknown_name", name=name, allowed=suggest_and_list(name, ski_names())
     )
 
 
 def _read_ski_file(path: Path) -> Ski:
+    """Ski from a file and its table; errors begin with the file's path."""
     values = file_values(path)
     table = values.table_file
     columns = read_table(table) if table else {}
@@ -173,6 +175,7 @@ def write_ski(ski: Ski, path: str | Path) -> None:
 
 
 def _keys_text(ski: Ski, table: str) -> str:
+    """TOML text with a ski's keys; `table`: name of the file with its columns."""
     values: dict[str, str | float] = {
         "name": ski.name,
         "source": ski.source,
@@ -192,6 +195,7 @@ def _keys_text(ski: Ski, table: str) -> str:
 
 
 def _table_text(ski: Ski) -> str:
+    """CSV text with a ski's columns; without the stiffnesses of a rigid ski."""
     tables = {name: getattr(ski, column.field) for name, column in COLUMNS.items()}
     if _is_rigid(ski):
         del tables["EI_N_m2"], tables["GJ_N_m2"]
@@ -201,6 +205,7 @@ def _table_text(ski: Ski) -> str:
 
 
 def _is_rigid(ski: Ski) -> bool:
+    """True if both stiffnesses are rigid everywhere."""
     return bool(np.all(ski.bending_stiffness == RIGID) and np.all(ski.torsional_stiffness == RIGID))
 
 

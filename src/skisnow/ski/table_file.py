@@ -93,6 +93,7 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
 
 
 def _parse_row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
+    """Numbers of a row, with the decimal mark `mark`; rejects a wrong number of cells."""
     if len(cells) != len(header):
         raise ParameterError("{path}, line {line}: {n_cells} cells for {n_header} columns. Correct it.").tag(
             "wrong_number_of_cells", path=path, line=line, n_cells=len(cells), n_header=len(header)
@@ -101,6 +102,7 @@ def _parse_row(path: Path, line: int, header: list[str], cells: list[str], mark:
 
 
 def _parse_cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
+    """Number of a cell in its column's unit of SI; rejects text and numbers out of range."""
     column = replace(COLUMNS[name], name=f"line {line}, {name}")
     try:
         value: object = float(cell if mark == "." else with_decimal_point(cell))
@@ -112,6 +114,7 @@ def _parse_cell(path: Path, line: int, name: str, cell: str, mark: str) -> float
 
 
 def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:
+    """Reject stations that do not fall from row to row; the error names the first such line."""
     rising = np.flatnonzero(np.diff(station) >= 0)
     if rising.size:
         before, value = station[rising[0] : rising[0] + 2]
@@ -257,5 +260,6 @@ def evenly_spread(values: npt.ArrayLike, front: float, rear: float) -> StationTa
 
 @functools.lru_cache(maxsize=32)
 def _evenly_spread(values: bytes, front: float, rear: float) -> StationTable:
+    """Table of values (the bytes of an array) at equal distances from `front` to `rear` (m)."""
     listed = np.frombuffer(values)
     return StationTable(np.linspace(front, rear, listed.size), listed)

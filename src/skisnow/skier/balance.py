@@ -125,7 +125,7 @@ class BalancedSkier:
         if self.skier.steers == "side-slip":
             return self._across()
         turns = TurnsOverTime(self.skier)
-        return self.skidding(turns) if self.skier.brakes_to else self._carving(CarvesOverTime(turns))
+        return self.skidding(turns) if self.skier.brakes_to else self._carve_control(CarvesOverTime(turns))
 
     def _across(self) -> SkidControl:
         """The control of a side-slip, whose start leans and edges the skis against the slope."""
@@ -143,7 +143,7 @@ class BalancedSkier:
             radius = self.scenario.ski.sidecut_radius_of_edge_line
             carved = self.skier.carves
             return self.skidding(CarvedLine(line, apexes, radius) if carved else RecedingLine(line, apexes))
-        return self._carving(Pursuit(line, self.skier.line_rate))
+        return self._carve_control(Pursuit(line, self.skier.line_rate))
 
     def skidding(self, plan: Plan) -> SkidControl:
         """The control of skidded turns with a plan."""
@@ -151,12 +151,14 @@ class BalancedSkier:
         snow, sledge = ForceMap.of(self.scenario), self.scenario.sledge
         return SkidControl(self.skier, plan, snow, body, sledge.inertia[0], sledge.stance_width, gravity)
 
-    def _carving(self, steering: Steering) -> CarveControl:
+    def _carve_control(self, steering: Steering) -> CarveControl:
+        """Controller of carved turns along a steering, with the scenario's edges, body and gravity."""
         body, gravity = self._body()
         edges, sledge = Edges.of(self.scenario, gravity.normal, self.skier), self.scenario.sledge
         return CarveControl(self.skier, steering, edges, body, sledge.inertia[0], sledge.stance_width, gravity)
 
     def _body(self) -> tuple[Body, Gravity]:
+        """Body of the scenario's sledge, and gravity at its start."""
         start, sledge = self.scenario.start, self.scenario.sledge
         body = Body(sledge.mass, sledge.inertia[1], sledge.inertia[2], sledge.centre_of_mass[1])
         return body, self._stand_on(start.x, start.y)[1]

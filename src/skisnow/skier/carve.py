@@ -148,6 +148,7 @@ class CarveControl:
 
     @property
     def _weight(self) -> float:
+        """Weight of the body (N)."""
         return self.body.mass * 9.81
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:

@@ -88,7 +88,7 @@ def cause_of(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> C
     time = np.array([each.seen.time for each in last])
     first: tuple[float, str, int] | None = None
     for code, crossed in _crossed(last, skier, weight).items():
-        at = _lasting(time, crossed)
+        at = _first_lasting_crossing(time, crossed)
         if at is not None and (first is None or time[at] < first[0]):
             first = (float(time[at]), code, at)
     if first is None:
@@ -126,8 +126,8 @@ def _crossed(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> d
     }
 
 
-def _lasting(time: FloatArray, crossed: NDArray[np.bool_]) -> int | None:
-    """First index from which a limit is crossed for a while."""
+def _first_lasting_crossing(time: FloatArray, crossed: NDArray[np.bool_]) -> int | None:
+    """First index from which a limit stays crossed for 0.05 s; None if there is none."""
     since: int | None = None
     for i, here in enumerate(crossed):
         if not here:

@@ -251,6 +251,7 @@ class RecedingLine:
         return self._bend[min(i + 1, len(self._bend) - 1)]
 
     def _next_apex(self, x: float) -> tuple[float, float]:
+        """Place (m) along and across the line of the next apex after x; behind the last, one as far on as before."""
         i = bisect.bisect_right(self._join_before, x) + 1
         if i < len(self.apexes):
             return self.apexes[i]

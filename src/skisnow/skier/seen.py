@@ -24,19 +24,32 @@ class Moment(Protocol):
     """The used attributes of a `skisnow.BootMoment`."""
 
     @property
-    def time(self) -> float: ...  # noqa: D102
+    def time(self) -> float:
+        """Present time (s)."""
+
     @property
-    def until(self) -> float: ...  # noqa: D102
+    def until(self) -> float:
+        """Time (s) at which the boots reach their target; `time` at the start."""
+
     @property
-    def position(self) -> FloatArray: ...  # noqa: D102
+    def position(self) -> FloatArray:
+        """Origin of the sledge in space (m), shape (3,)."""
+
     @property
-    def rotation(self) -> FloatArray: ...  # noqa: D102
+    def rotation(self) -> FloatArray:
+        """Axes of the sledge as columns, shape (3, 3)."""
+
     @property
-    def velocity(self) -> FloatArray: ...  # noqa: D102
+    def velocity(self) -> FloatArray:
+        """Velocity (m/s) and angular velocity (rad/s) in axes of the sledge, shape (6,)."""
+
     @property
-    def boots(self) -> FloatArray: ...  # noqa: D102
+    def boots(self) -> FloatArray:
+        """Pose of each boot against the sledge: place, axes and velocities, shape (2, 6, 3)."""
+
     @property
-    def wrench(self) -> FloatArray: ...  # noqa: D102
+    def wrench(self) -> FloatArray:
+        """Force (N) and moment (N m) of each ski on its boot, in its axes, shape (2, 6)."""
 
 
 @dataclass(frozen=True, slots=True)

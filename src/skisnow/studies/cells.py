@@ -61,6 +61,7 @@ def read_cells(place: str, columns: Sequence[str], cells: Sequence[str], readers
 
 
 def _is_unreadable(read: Reader, text: str) -> bool:
+    """True if the reader rejects the text."""
     try:
         read(text)
     except (ValueError, TypeError):
@@ -69,6 +70,7 @@ def _is_unreadable(read: Reader, text: str) -> bool:
 
 
 def _cell_reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
+    """Function that converts a cell's text to a text, number, switch or list, by the column's name."""
     if name in TEXTS or (name in keys and keys[name].kind == "text"):
         empty = "" if name in BLANK else None
         return lambda text: remove_protection(text) if text else empty
@@ -85,6 +87,7 @@ def _cell_reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
 
 
 def _switch_or_list(text: str) -> bool | list[float]:
+    """True, False or a list of numbers from a text; ValueError for another one."""
     if text.startswith("["):
         return [float(number) for number in json_value(text)]
     if text.lower() not in ("true", "false"):

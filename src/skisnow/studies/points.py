@@ -65,6 +65,7 @@ class Axis:
 
     @classmethod
     def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
+        """Axis of a range from a low to a high end; rejects equal or falling ends, or a logarithm of 0."""
         if key.kind not in ("number", "whole number"):
             raise ParameterError("{name} has no range; write a list such as {name} = [...]").tag(
                 "no_data", name=key.name
@@ -131,6 +132,7 @@ def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> list[
 
 
 def _points(names: list[str], values: Iterable[tuple[Any, ...]], fixed: Point) -> list[Point]:
+    """One point for each row of values, with the fixed inputs added."""
     return [{**fixed, **dict(zip(names, chosen, strict=True))} for chosen in values]
 
 

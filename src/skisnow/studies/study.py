@@ -86,6 +86,7 @@ class Study(Shown):
     points: Sequence[Point]
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of points and the file, and rows with the model, inputs and table."""
         subject = type(self.subject).__name__
         rows = (("of", subject), ("varied", ", ".join(self.varied)), ("table", str(self.out)))
         return Facts(f"of {len(self.points)} points, {self.file}", rows)
@@ -172,6 +173,7 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
 
 
 def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
+    """Study from a file's values; rejects unknown keys, and a study without a varied input."""
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError("{key} is not a key of a study. {allowed}").tag(
@@ -198,6 +200,7 @@ def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
 
 
 def _make_model(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
+    """Model of a study: the scenario that it names, otherwise that of `subject`."""
     if "scenario" not in values:
         return subject(path.parent)
     word = values["scenario"]
@@ -209,6 +212,7 @@ def _make_model(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
 
 
 def _grid_or_latin_hypercube(values: Mapping[str, Any]) -> str:
+    """The one section of a study that varies inputs; rejects both and neither."""
     forms = [form for form in FORMS if form in values]
     if len(forms) != 1:
         raise ParameterError("a study has either [grid] or [latin_hypercube]; {count} of them are there").tag(
@@ -218,6 +222,7 @@ def _grid_or_latin_hypercube(values: Mapping[str, Any]) -> str:
 
 
 def _read_section(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Section of a study, empty if it is missing; rejects anything but a table."""
     table = values.get(name, {})
     if not isinstance(table, dict):
         raise ParameterError("{name} is {table!r}; it must be a table, begun by the line [{name}]").tag(
@@ -227,6 +232,7 @@ def _read_section(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def _read_fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
+    """Fixed inputs, one value each; rejects unknown names and values out of range."""
     fixed = {}
     for name, value in table.items():
         _require_key("fixed", name, keys)
@@ -242,6 +248,7 @@ def _read_fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point
 
 
 def _make_axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
+    """Axis of a varied input; rejects an unknown name, or an input that is also fixed."""
     _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
         raise ParameterError("{name} is in [{form}] and in [fixed]. Remove one of them").tag(
@@ -251,6 +258,7 @@ def _make_axis(form: str, name: str, value: object, keys: Mapping[str, Quantity]
 
 
 def _require_key(table: str, name: str, keys: Collection[str]) -> None:
+    """Reject a name that is no input."""
     if name not in keys:
         raise ParameterError("{table}.{name} is not an input. {allowed}").tag(
             "unknown_name", table=table, name=name, allowed=suggest_and_list(name, keys)
@@ -258,6 +266,7 @@ def _require_key(table: str, name: str, keys: Collection[str]) -> None:
 
 
 def _table_path(path: Path, values: Mapping[str, Any]) -> Path:
+    """Path of the result table, in the study's folder; its name must end in .csv."""
     out = values.get("out")
     if not isinstance(out, str) or not out.strip():
         raise ParameterError('out is {out!r}; it is the place of the table, such as out = "table.csv"').tag(

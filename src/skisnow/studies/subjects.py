@@ -71,6 +71,7 @@ class _PointModel(ShownFields):
         return {**own, "outcome": FAILED, "warnings": "", "reason": reason}
 
     def _compute_row(self, point: Point) -> Row:
+        """Results at a point, by column; it may raise an error."""
         raise NotImplementedError
 
     def _defaults(self) -> dict[str, Any]:
@@ -116,6 +117,7 @@ class CarveModel(_PointModel):
         ]
 
     def _compute_row(self, point: Point) -> Row:
+        """Carve at a point: inputs, results, largest depth (mm) and force, and warnings."""
         answer = answer_question(carve_question(point), sources=self._sources)
         equilibrium = answer.equilibrium
         scalars = scalars_dict(equilibrium)
@@ -184,6 +186,7 @@ class ScenarioModel(_PointModel):
         return [*own, *(self.folder / word for word in sorted(named))]
 
     def _compute_row(self, point: Point) -> Row:
+        """Run at a point; KeyboardInterrupt if the run was interrupted."""
         from ..simulation.simulated_run import simulate
 
         scenario_file = self._scenario_of_point(point)
@@ -193,6 +196,7 @@ class ScenarioModel(_PointModel):
         return _run_row(scenario_file, run)
 
     def _scenario_of_point(self, point: Point) -> ScenarioFile:
+        """Scenario with the values of a point."""
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
     def _defaults(self) -> dict[str, Any]:

@@ -54,6 +54,7 @@ class StudyTable(Shown):
     varied: tuple[str, ...]
 
     def _repr_facts(self) -> Facts:
+        """Title with the number of points, and rows with counts of outcomes, inputs and columns."""
         counts = ", ".join(f"{outcome} {count}" for outcome, count in self.counts().items())
         rows = (("outcomes", counts), ("varied", ", ".join(self.varied)), ("columns", ", ".join(self.columns)))
         return Facts(f"of {len(self.rows)} points", rows)
@@ -108,12 +109,14 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
 
 
 def _table_error(path: Path, why: object) -> ParameterError:
+    """Error for a table of a study that cannot be read."""
     return ParameterError(
         "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again"
     ).tag("cannot_read", path=path, reason=why)
 
 
 def _require_columns(path: Path, columns: Sequence[str]) -> None:
+    """Reject a table without the columns outcome and study."""
     if not {"outcome", "study"} <= set(columns):
         raise ParameterError("{path} is not a table of a study: its first line names no columns outcome and study").tag(
             "unknown_name", path=path

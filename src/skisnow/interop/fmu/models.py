@@ -119,10 +119,12 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
 
 
 def _start_values(variables: tuple[Variable, ...]) -> FloatArray:
+    """Start value of each variable."""
     return np.array([variable.start for variable in variables])
 
 
 def _require_builtin_laws(snow: SnowField) -> None:
+    """Reject a snow with a law in Python."""
     if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
         raise ParameterError("an FMU contains no Python: it accepts the built-in laws, not a user-defined one").tag(
             "no_data"

@@ -73,6 +73,7 @@ def _require(path: str | Path, fmi: int) -> None:
 
 
 def _write_fmu(model: Model, path: Path, fmi: Version) -> Path:
+    """Write the FMU: description, compiled library, data and licence; its bytes depend on the contents only."""
     library = c_library().read_bytes()
     digest = hashlib.sha256(library + model.data.encode() + repr(model).encode()).hexdigest()
     token = "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32]))

@@ -89,6 +89,7 @@ def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]
 
 
 def _texts_of(about: Mapping[str, Values], key: str) -> list[str]:
+    """Texts of a parameter; empty if it is missing."""
     return [word for word in about.get(key, ()) if isinstance(word, str)]
 
 
@@ -158,6 +159,7 @@ def _number(parameters: Mapping[tuple[str, str], Values], key: tuple[str, str], 
 
 
 def _read_parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[str, str], Values]]:
+    """Values of the parameters of a C3D file, each by group and name; rejects a damaged entry."""
     groups: dict[int, str] = {}
     parameters: list[tuple[int, str, Values]] = []
     while True:

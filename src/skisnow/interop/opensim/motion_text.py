@@ -56,6 +56,7 @@ class MotionTable(Shown):
                 )
 
     def _repr_facts(self) -> Facts:
+        """Title with the numbers of columns and rows, and the last time (s)."""
         return Facts(f"{len(self.columns)} columns, {len(self.time)} rows to {amount(float(self.time[-1]), 's')}")
 
 
@@ -175,6 +176,7 @@ class Markers(Shown):
         require_range("rate", self.rate, 0.0, np.inf, above=True, below=True)
 
     def _repr_facts(self) -> Facts:
+        """Title with the numbers of markers, frames and omitted points, and the rate (Hz)."""
         omitted = f", {len(self.omitted)} other points omitted" if self.omitted else ""
         return Facts(f"{len(self.names)} markers, {len(self.time)} frames at {amount(self.rate, 'Hz')}{omitted}")
 
@@ -311,6 +313,7 @@ def _pose(markers: Markers, of: BootMarkers, turned: FloatArray) -> tuple[FloatA
 
 
 def _complete_places(markers: Markers, name: str) -> FloatArray:
+    """Places (m) of a marker in every frame; rejects gaps and places out of range."""
     place = markers.of(name)
     unseen = ~np.isfinite(place).all(axis=1)
     if unseen.any():
@@ -329,6 +332,7 @@ def _complete_places(markers: Markers, name: str) -> FloatArray:
 
 
 def _unit_vectors(vectors: FloatArray, of: BootMarkers) -> FloatArray:
+    """Vectors divided by their lengths; rejects one without a length: the markers of the boot lie on one line."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not np.all(length > 1e-9):
         raise ParameterError(
