@@ -54,7 +54,7 @@ def require_within(ski: Ski, load: float, moment: float) -> None:
 
 
 def require_choices(groove: str, moment_balance: str, side_force_spread: str) -> None:
-    """Reject a word that is not a choice."""
+    """Reject a groove, moment balance or spread of the side force that is not among the choices."""
     require_choice("groove", groove, GROOVES)
     require_choice("moment_balance", moment_balance, MOMENT_BALANCES)
     require_choice("side_force_spread", side_force_spread, SIDE_FORCE_SPREADS)

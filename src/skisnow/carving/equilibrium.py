@@ -221,7 +221,7 @@ def rest(
     twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
-    """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`.
+    """Equilibrium of a ski set down on virgin snow, without side force; arguments (SI) as in `carve`.
 
     Parameters
     ----------

@@ -224,7 +224,7 @@ class CarveQuestion:
         require_declared(self)
 
     def changed(self, ski: Ski) -> Ski:
-        """The ski with the factors of the question applied; the same object if all factors are 1."""
+        """Ski with the factors of the question applied; the ski itself if all factors are 1."""
         factors = {column: float(getattr(self, name)) for name, column in SKI_FACTORS.items()}
         if all(factor == 1.0 for factor in factors.values()):
             return ski

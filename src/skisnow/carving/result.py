@@ -175,7 +175,7 @@ class Equilibrium(Shown):
 
     @property
     def turn_radius_boot_other_spread(self) -> float | None:
-        """`turn_radius_boot` with the side force spread the other way along the edge, all else alike (m).
+        """Turn radius at the boot (m) with the other spread of the side force along the edge, all else alike.
 
         Shows how much depends on that choice. A second equilibrium, computed on demand; None if it is not found.
         """

@@ -128,7 +128,7 @@ class CarveDerivatives:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of all parameters."""
+        """Names of all parameters by which outputs can be differentiated."""
         return (*CONDITIONS, *shape_parameters(self.request.model.ski))
 
     @property
@@ -297,7 +297,7 @@ class CarveDerivatives:
         return float(self.derivatives(output, (name,))[0])
 
     def derivatives(self, output: str, names: tuple[str, ...]) -> FloatArray:
-        """Derivatives of an output by each parameter, as `derivative`: one adjoint for all."""
+        """Derivatives of an output by each parameter, per its unit, all from one solution of the adjoint equations."""
         gradient, out = self._gradient(output), np.zeros(len(names))
         growth, of_ski = gradient.output, tuple(name for name in names if name not in CONDITIONS)
         for row, name in enumerate(names):

@@ -267,7 +267,7 @@ class SnowField(Shown):
 
     @property
     def shear_in_python(self) -> ShearLaw | None:
-        """The shear law, if the core does not have it."""
+        """The shear law if it is evaluated in Python; None if the compiled core has it."""
         known = (AngleShear, ConstantShear, DensityShear, NaturalDensityShear)
         if isinstance(self.shear, known) or (isinstance(self.shear, MachiningShear) and self._core_shear_law().cuts):
             return None

@@ -31,7 +31,7 @@ its contraction, so a value ten times smaller moves ends by less than their erro
 
 
 class Ended(IntEnum):
-    """Outcome of `Dynamics.advance`."""
+    """Reason why a call of `Dynamics.advance` ended: time reached, step too small, or numbers not finite."""
 
     REACHED = 0
     STEP_TOO_SMALL = 1

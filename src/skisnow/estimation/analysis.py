@@ -114,7 +114,7 @@ class Analysis(Shown):
 
     @cached_property
     def results(self) -> dict[str, Any]:
-        """The contents of results.json, see `results_dict`; not to be changed."""
+        """Contents of results.json: estimates as JSON values, in the units of their keys; do not change them."""
         from .results import results_dict
 
         return results_dict(self)

@@ -45,7 +45,7 @@ class Comparison:
     own: CampaignMean
 
     def as_dict(self) -> dict[str, Any]:
-        """JSON entry of results.json."""
+        """Entry of results.json: source, quantity, own and published values."""
         own = self.own
         published: dict[str, Any] = (
             {"range": list(self.published)} if isinstance(self.published, tuple) else {"value": self.published}

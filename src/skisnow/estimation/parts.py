@@ -153,7 +153,7 @@ def site_snow(
     site: str | None,
     unloading_ratio: float | None,
 ) -> SnowProperties:
-    """Snow of a site (None: all) from the means over its used experiments, as in `skisnow.read_snow`."""
+    """Mean hardness and stress over a site's used experiments (None: all sites); rejects a site without hardness."""
     pressed = sheared = np.zeros(0), np.zeros(0, dtype=object)
     if penetration is not None and campaign.penetration is not None:
         used = penetration.screened.used

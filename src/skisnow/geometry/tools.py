@@ -101,13 +101,13 @@ class SkiPiece(Tool):
         require_declared(self)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.contact_area`."""
+        """Contact area (m²) at depth e (m), edge angle (rad): L e / tan ϑ for the wedge, then the whole base."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         wedge = e < self.width * np.sin(angle)
         return self.length * np.where(wedge, e / _tangent(angle), self.width * np.cos(angle))
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.displaced_volume`."""
+        """Volume displaced (m³) at depth e (m) and edge angle (rad): a wedge, then with the whole base loaded."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         rim = self.width * np.sin(angle)
         wedge = e < rim
@@ -115,13 +115,13 @@ class SkiPiece(Tool):
         return self.length * np.where(wedge, plain, self.width * np.cos(angle) * (e - rim / 2.0))
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.area_growth`: L / tan ϑ for the wedge, 0 once the whole base is loaded."""
+        """Derivative dA/de (m): L / tan ϑ for the wedge, 0 once the whole base is loaded."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         wedge = e < self.width * np.sin(angle)
         return np.where(wedge, self.length / _tangent(angle), 0.0)
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.depth_at_volume`."""
+        """Depth (m) at which the volume (m³) is displaced, at an edge angle (rad)."""
         V, angle = np.asarray(displaced_volume, float), np.asarray(edge_angle, float)
         rim = self.width * np.sin(angle)
         base = self.length * self.width * np.cos(angle)
@@ -130,7 +130,7 @@ class SkiPiece(Tool):
         return np.where(wedge, plain, V / base + rim / 2.0)
 
     def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.maximum_depth`: the width, beyond which snow closes over any real piece of ski."""
+        """Depth (m) above which readings are flagged: the width, beyond which snow closes over real pieces of ski."""
         return np.full(np.shape(edge_angle), self.width)
 
 
@@ -150,29 +150,29 @@ class PlainWedge(Tool):
         require_declared(self)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.contact_area`."""
+        """Contact area (m²) at depth e (m) and edge angle (rad): L e / tan ϑ, or L W if flat."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         return self.length * np.where(angle > _FLAT, e / _tangent(angle), self.width)
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.displaced_volume`."""
+        """Volume displaced (m³) at depth e (m) and edge angle (rad): L e² / (2 tan ϑ), or L W e if flat."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         return self.length * np.where(angle > _FLAT, e**2 / (2.0 * _tangent(angle)), self.width * e)
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.area_growth`."""
+        """Derivative dA/de (m) of the contact area by the depth: L / tan ϑ, or 0 if flat."""
         _, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
         return np.where(angle > _FLAT, self.length / _tangent(angle), 0.0)
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.depth_at_volume`."""
+        """Depth (m) at which the volume V (m³) is displaced: √(2 V tan ϑ / L), or V / (L W) if flat."""
         V, angle = np.asarray(displaced_volume, float), np.asarray(edge_angle, float)
         plain = np.sqrt(2.0 * _tangent(angle) * V / self.length)
         flat: FloatArray = V / (self.length * self.width)
         return np.where(angle > _FLAT, plain, flat)
 
     def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.maximum_depth`: W sin ϑ edged, where the base goes under; the width when flat."""
+        """Depth (m) above which readings are flagged: W sin ϑ edged, where the base goes under; W when flat."""
         angle = np.asarray(edge_angle, float)
         return np.where(angle > _FLAT, self.width * np.sin(angle), self.width)
 
@@ -196,23 +196,23 @@ class Disc(Tool):
         return float(np.pi * self.diameter**2 / 4.0)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.contact_area`."""
+        """Contact area (m²): that of the disc, at any depth and edge angle."""
         return np.full(np.shape(penetration_depth), self._face_area)
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.displaced_volume`."""
+        """Volume displaced (m³): area of the disc times the depth (m)."""
         return self._face_area * np.asarray(penetration_depth, float)
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.area_growth`."""
+        """Derivative dA/de (m) of the contact area by the depth: 0."""
         return np.zeros(np.shape(penetration_depth))
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.depth_at_volume`."""
+        """Depth (m) at which the volume (m³) is displaced: volume over area of the disc."""
         return np.asarray(displaced_volume, float) / self._face_area
 
     def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.maximum_depth`: the diameter."""
+        """Depth (m) above which readings are flagged: the diameter."""
         return np.full(np.shape(edge_angle), self.diameter)
 
 
@@ -241,11 +241,11 @@ class LyingCylinder(Tool):
         return half
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.contact_area`."""
+        """Contact area (m²) at depth e (m): 2 w √(e (2 R - e)), at most 2 w R; the edge angle has no effect."""
         return 2.0 * self.width * self._half_chord(np.asarray(penetration_depth, float))
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.displaced_volume`."""
+        """Volume displaced (m³) at depth e (m): width times the circle's segment, straight sides beyond depth R."""
         e = np.asarray(penetration_depth, float)
         R = self.radius
         inside = np.minimum(e, R)
@@ -256,14 +256,14 @@ class LyingCylinder(Tool):
         return volume
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
-        """See `Tool.area_growth`: infinite at e = 0, where the contact is a line."""
+        """Derivative dA/de (m) of the contact area by the depth; infinite at e = 0, where the contact is a line."""
         e = np.asarray(penetration_depth, float)
         with np.errstate(divide="ignore", invalid="ignore"):
             growth = 2.0 * self.width * (self.radius - e) / self._half_chord(e)
         return np.where(e < self.radius, growth, 0.0)
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.depth_at_volume`: by Newton's method from above, where the convex V makes it converge."""
+        """Depth (m) at which the volume (m³) is displaced, by Newton's method from above, as V is convex."""
         V = np.asarray(displaced_volume, float)
         R = self.radius
         buried = R + (V / self.width - np.pi * R**2 / 2.0) / (2.0 * R)
@@ -279,7 +279,7 @@ class LyingCylinder(Tool):
         return e
 
     def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.maximum_depth`: the radius."""
+        """Depth (m) above which readings are flagged: the radius."""
         return np.full(np.shape(edge_angle), self.radius)
 
 

@@ -68,7 +68,7 @@ def applied(rows: Sequence[Vector], a: Vector) -> Vector:
 
 
 def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:
-    """Axes of a boot from its angles (rad), as the rows of an array (3, 3); see `axis_rows`."""
+    """Axes of a boot (ahead, left, off the base) from its angles (rad), as the rows of an array (3, 3)."""
     return np.array(axis_rows(edge_angle, pitch, heading))
 
 

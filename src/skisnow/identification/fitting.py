@@ -224,6 +224,6 @@ class _ProgressCounter:
         self.progress(f"{self.doing}; {runs} simulated runs")
 
     def about(self, doing: str) -> None:
-        """Report the current step."""
+        """Report that a step such as a search begins, with the number of simulated runs so far."""
         self.doing = doing
         self.progress(f"{doing}; {self.runs} simulated runs" if self.runs else doing)

@@ -192,7 +192,7 @@ def with_numbers(snow: SnowProperties, values: Mapping[str, Any]) -> SnowPropert
 
 
 def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
-    """A scenario with other parts and values; see `Scenario.with_`."""
+    """Copy of a scenario with other parts, by name, and values, by key; rejects unknown names and words of a file."""
     part_names = {field.name for field in fields(scenario)} | {"snow", "snow_map"}
     parts: dict[str, Any] = {name: value for name, value in changes.items() if name in part_names}
     numbers = {_full_name(name, part_names): value for name, value in changes.items() if name not in part_names}

@@ -73,7 +73,7 @@ def require_known(section: Mapping[str, Any]) -> None:
 
 
 def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
-    """The tables ``[identify."KEY"]`` by full key."""
+    """Tables ``[identify."KEY"]`` of the section, by full key and, if given, ``@`` and the run's name."""
     parameters: dict[str, dict[str, float]] = {}
     for word, table in section.items():
         if word in NO_KEYS:

@@ -188,7 +188,7 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
 
 
 def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
-    """Width of the cells in x (dx) or y (dy)."""
+    """Width of the cells in x (dx) or y (dy), or cellsize; rejects a header without it, or a width of 0 or less."""
     size = header.get(word, header.get("cellsize"))
     if size is None:
         _refuse(path, f"The header has no cellsize, and no {word}. Is it an ESRI ASCII grid? Export it again")

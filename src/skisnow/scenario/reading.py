@@ -232,7 +232,7 @@ def scenario_names() -> tuple[str, ...]:
 
 
 def scenario_place(name: str) -> Path:
-    """Path of a built-in scenario."""
+    """Path of the TOML file of a built-in scenario; it need not exist."""
     return Path(str(_FOLDER / f"{name}.toml"))
 
 

@@ -128,7 +128,7 @@ def _provenance_json(files: Iterable[Path]) -> dict[str, Any]:
 
 
 def time_gates(course: Course, moving: Run | Track) -> CourseResult:
-    """Say which gates were passed, and when.
+    """Determine which gates of a course were passed, and when.
 
     Parameters
     ----------

@@ -214,7 +214,7 @@ def key_value(keys: Mapping[str, Any], place: str) -> float:
 
 
 def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """Keys of a ski file with other values; names as of `shape_parameters`, without their ``ski.``."""
+    """Copy of a ski file's keys with other values; a name such as ``EI_N_m2[3]`` is an entry of a list."""
     out = dict(keys)
     for place, value in values.items():
         row = _ROW.fullmatch(place)

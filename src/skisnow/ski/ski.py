@@ -121,7 +121,7 @@ class Ski(Shown):
 
     @property
     def edge_shape(self) -> EdgeShape:
-        """Grinding of the edges."""
+        """Bevel angles (rad), width and radius (m) of the ground edges."""
         return EdgeShape(self.base_bevel, self.edge_width, self.side_edge, self.edge_radius)
 
     @property

@@ -112,7 +112,7 @@ class BalancedSkier:
         self.control = type(self.controller).__qualname__
 
     def _built_in(self) -> BuiltIn:
-        """The control of the scenario's plan or course."""
+        """Controller that the scenario's skier steers by: gates, a wedge, a side-slip, or turns over time."""
         course = self.scenario.course
         if self.skier.steers == "gates" and course is not None:
             apexes = self.apexes(course)
@@ -146,7 +146,7 @@ class BalancedSkier:
         return self._carve_control(Pursuit(line, self.skier.line_rate))
 
     def skidding(self, plan: Plan) -> SkidControl:
-        """The control of skidded turns with a plan."""
+        """Controller of skidded turns that follow a plan."""
         body, gravity = self._body()
         snow, sledge = ForceMap.of(self.scenario), self.scenario.sledge
         return SkidControl(self.skier, plan, snow, body, sledge.inertia[0], sledge.stance_width, gravity)

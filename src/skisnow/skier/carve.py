@@ -78,7 +78,7 @@ class Underway:
 
 
 class Steering(Protocol):
-    """Says how to turn."""
+    """Interface of steerings: desired acceleration to the left."""
 
     def acceleration(self, at: Underway, carving: float) -> float:
         """To the left (m/s²), where a carve in balance has so much of it."""
@@ -91,7 +91,7 @@ class CarvesOverTime:
     plan: TurnsOverTime
 
     def acceleration(self, at: Underway, carving: float) -> float:
-        """Acceleration of a carve in balance, to one side or the other."""
+        """Acceleration (m/s²) of a carve in balance, to the side of the present turn."""
         return self.plan.sense(at.time) * carving
 
 
@@ -152,7 +152,7 @@ class CarveControl:
         return self.body.mass * 9.81
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """Command to the body until the next call."""
+        """Command to the body until the next call, `dt` (s) later, so that it carves in balance."""
         now, height = seen.time + dt, self.body.height
         aside, rate = float(posture.numbers[1]), posture.aside_rate
         roll = self.roll_inertia * height**2 / (height**2 + aside**2)

@@ -66,18 +66,18 @@ class Controller(Protocol):
     """
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """Command to the body until the next call."""
+        """Command to the body for the next `dt` (s), from its observed state and posture."""
 
 
 @dataclass(slots=True)
 class Smoothed:
-    """A filter of first order."""
+    """First-order low-pass filter with a time constant (s) and its present value."""
 
     time: float
     value: float = 0.0
 
     def step(self, value: float, dt: float) -> float:
-        """Value after a step (s)."""
+        """Advance the filter by `dt` (s) towards a value, and return its new value."""
         self.value += (1.0 - math.exp(-dt / self.time)) * (value - self.value)
         return self.value
 
@@ -123,7 +123,7 @@ class SkidControl:
     _planned: Planned = field(init=False)
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """Command to the body until the next call."""
+        """Command to the body for the next `dt` (s), so that it skids along its plan."""
         self._learn(seen, posture)
         self._since += dt
         if self._since > GAIN_TIME - 1e-9:
@@ -237,7 +237,7 @@ class SkidControl:
 
 
 def standing(seen: Seen, posture: Posture, edge: tuple[float, float]) -> Command:
-    """All joints held, at these edge angles (rad)."""
+    """Command that stops all joints, at edge angles (rad) of the left and right ski."""
     left, right = (float(posture.numbers[place]) for place in (LEFT_TOE, RIGHT_TOE))
     return Command(
         edge=edge,

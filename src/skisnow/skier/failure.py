@@ -106,7 +106,7 @@ def cause_of(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> C
 
 
 def _crossed(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> dict[str, NDArray[np.bool_]]:
-    """Whether each limit is crossed at each moment."""
+    """Masks over the moments, by limit: True while it is crossed."""
     seen = [each.seen for each in records]
     load = np.array([each.load for each in seen]) / weight
     across = np.array([each.across for each in seen])

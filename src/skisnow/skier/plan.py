@@ -68,14 +68,14 @@ class Planned:
 
 
 class Plan(Protocol):
-    """Plan of the turns."""
+    """Interface of plans of turns."""
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
-        """Plan from a state onwards."""
+        """Planned forces and courses from an observed state onwards."""
 
 
 class Line(Protocol):
-    """Line over a course."""
+    """Interface of lines over a course."""
 
     def at(self, x: float) -> tuple[float, float, float]:
         """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""
@@ -114,7 +114,7 @@ class TurnsOverTime:
         return most * math.cos(phase), -most * rate * math.sin(phase)
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
-        """The turns, and the return to their course."""
+        """Planned turns from now on, with a gradual return from the present course to that of the turns."""
         course, rate = np.array([self.course(seen.time + later) for later in AHEAD]).T
         back = (seen.course - self.course(seen.time)[0]) * np.exp(-BACK * AHEAD)
         speed = max(seen.speed, SLOWEST)

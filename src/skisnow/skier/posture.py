@@ -159,7 +159,7 @@ class Posture:
 
     @property
     def height(self) -> float:
-        """Of the centre of mass over the feet (m)."""
+        """Height (m) of the centre of mass over the feet."""
         return self.centre[1] + float(self.numbers[RISE])
 
     @property
@@ -224,7 +224,7 @@ class Posture:
         self._follow(STANCE, command.stance or self.stance, OPENING, dt)
 
     def _follow(self, place: int, wanted: float, corner: float, dt: float, *, fastest: float = math.inf) -> None:
-        """Critically damped."""
+        """Move a joint towards `wanted` over `dt` (s), critically damped, at most at the rate `fastest`."""
         value, rate = float(self.numbers[place]), float(self.rates[place])
         if value == wanted and rate == 0.0:
             return

@@ -73,7 +73,7 @@ class WedgeControl:
     _held_edges: tuple[float, float] | None = None
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """Command to the body until the next call."""
+        """Command to the body for the next `dt` (s), so that the wedge keeps or brakes its speed."""
         if self._start_aside is None:
             self._start_aside = seen.place[1]
         if seen.speed < STOPPED or (self._held_edges is not None and seen.speed < 3.0 * STOPPED):
@@ -98,14 +98,14 @@ class WedgeControl:
         )
 
     def _stand(self, seen: Seen, posture: Posture) -> Command:
-        """All joints held, edges a little steeper."""
+        """Command that stops all joints, with the edges a little steeper."""
         if self._held_edges is None:
             self._held_edges = float(posture.numbers[LEFT_EDGE]), float(posture.numbers[RIGHT_EDGE])
         more = 0.5 * MORE_EDGE * (self._held_edges[1] - self._held_edges[0])
         return standing(seen, posture, (self._held_edges[0] - more, self._held_edges[1] + more))
 
     def _held_by(self, edge: float) -> float:
-        """Force (N) of one ski at an edge angle (rad)."""
+        """Force (N) that the snow can exert on one ski at an edge angle (rad)."""
         return self.grip * self.snow.force(edge, 0.5 * self.body.mass * self.gravity.normal)
 
     def _opened(self, seen: Seen, posture: Posture) -> tuple[float, float, float]:

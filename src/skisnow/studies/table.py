@@ -72,7 +72,7 @@ class StudyTable(Shown):
         return self.tally().counts()
 
     def tally(self) -> Tally:
-        """Outcomes, warnings and errors, counted."""
+        """Counts of outcomes, warnings and errors over the rows."""
         return Tally.of(self.rows)
 
 

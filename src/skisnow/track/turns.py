@@ -54,7 +54,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """Points from ``first`` to ``last`` whose curvature significantly has the same sign: 1 left, −1 right."""
+    """Piece of a turn: points from ``first`` to ``last`` with a significant curvature of one sign: 1 left, −1 right."""
 
     first: int
     last: int
@@ -88,7 +88,7 @@ def find_turns(
 
 
 def _pieces(motion: TrackMotion, first: int, last: int, patience: float) -> Iterator[_Piece]:
-    """Stretches with a significant curvature of the same sign."""
+    """Pieces of turns: stretches of points with a significant curvature of one sign, without rests or gaps."""
     with np.errstate(invalid="ignore"):
         curved = np.abs(motion.curvature) > np.maximum(SIGNIFICANCE * motion.curvature_sd, 1.0 / STRAIGHT)
     sure = np.flatnonzero((curved & motion.smoothed.usable)[first : last + 1]) + first

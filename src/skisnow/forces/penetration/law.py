@@ -127,23 +127,23 @@ class DeepeningPoint(PointLaw):
             ).tag("out_of_range", kind=type(self).__name__, unloading_ratio=self.unloading_ratio)
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`."""
+        """Stress p (N/m², ≥ 0) at depth ε (m) of a place that has been at ε_max (m) before; unloading along k_u."""
         depth = np.asarray(depth, float)
         reached = self.deepest_after(depth, deepest)
         loaded, _, unloading = self._loading(reached)
         return np.maximum(loaded - unloading * (reached - depth), 0.0)
 
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`."""
+        """Depth ε_res (m) of the groove that is left when the place is unloaded: ε_max - p/k_u."""
         loaded, _, unloading = self._loading(deepest)
         return np.asarray(deepest, float) - loaded / unloading
 
     def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
+        """Energy per area (J/m²) that comes back when the place is unloaded from depth ε: p²/(2 k_u)."""
         _, _, unloading = self._loading(self.deepest_after(depth, deepest))
         return self.stress(depth, deepest) ** 2 / (2.0 * unloading)
 
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: the work of loading minus the recovered work."""
+        """Energy per area (J/m²) lost in the groove of depth ε_max: work of loading minus the recovered work."""
         loaded, work, unloading = self._loading(deepest)
         return np.maximum(work - loaded**2 / (2.0 * unloading), 0.0)  # elastic: rounding could be below 0

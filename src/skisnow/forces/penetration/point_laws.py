@@ -50,21 +50,21 @@ class ElasticPoint(PointLaw):
     snow_hardness: Annotated[float, ABOVE_ZERO, SNOW_HARDNESS]
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`; the deepest depth does not matter."""
+        """Stress H_V ε (N/m²) at depth ε (m), 0 above the snow; the maximum depth has no effect."""
         depth, _ = np.broadcast_arrays(np.asarray(depth, float), np.asarray(deepest, float))
         result: FloatArray = self.snow_hardness * np.maximum(depth, 0.0)
         return result
 
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`: 0."""
+        """Depth (m) of the groove that is left: 0."""
         return np.zeros(np.shape(deepest))
 
     def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: ½ H_V ε²."""
+        """Energy per area (J/m²) that comes back when the place is unloaded from depth ε: ½ H_V ε²."""
         return self.stress(depth, deepest) ** 2 / (2.0 * self.snow_hardness)
 
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: 0."""
+        """Energy per area (J/m²) that is lost in a groove: 0."""
         return np.zeros(np.shape(deepest))
 
 
@@ -96,7 +96,7 @@ class _Hypoplastic(PointLaw):
         return 1.0 - 1.0 / self.unloading_ratio
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`."""
+        """Stress p (N/m², ≥ 0) at depth ε (m) of a place that has been at ε_max (m) before; unloading along k_u."""
         depth = np.asarray(depth, float)
         reached = self.deepest_after(depth, deepest)
         risen = reached - depth
@@ -106,15 +106,15 @@ class _Hypoplastic(PointLaw):
         return result
 
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`: ε_max (1 - H_V/k_u)."""
+        """Depth ε_res (m) of the groove that is left when the place is unloaded: ε_max (1 - H_V/k_u)."""
         return np.asarray(deepest, float) * self._kept
 
     def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
+        """Energy per area (J/m²) that comes back when the place is unloaded from depth ε: p²/(2 k_u)."""
         return self.stress(depth, deepest) ** 2 / (2.0 * self.unloading_ratio * self._loading_stiffness)
 
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: ½ H_V ε_max² (1 - H_V/k_u)."""
+        """Energy per area (J/m²) that the groove of depth ε_max has cost: ½ H_V ε_max² (1 - H_V/k_u)."""
         return 0.5 * self._loading_stiffness * np.asarray(deepest, float) ** 2 * self._kept
 
 
@@ -212,7 +212,7 @@ class VolumeWithAnglePoint(_Hypoplastic):
     _factor: ClassVar[float] = ANGLE_TERM[0]
 
     def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:
-        """See `PointLaw.stress_and_energy`."""
+        """Stress (N/m²) and energy per area (J/m²), (2, n); both grow linearly with the edge angle (rad)."""
         b0, b1 = ANGLE_TERM
         return (1.0 + b1 / b0 * edge_angle) * PointLaw.stress_and_energy(self, depth, deepest, edge_angle)
 
@@ -277,7 +277,7 @@ class MeanPressurePoint(DeepeningPoint):
 
     @property
     def bends(self) -> tuple[float, ...]:
-        """See `PointLaw.bends`: where the ramp ends."""
+        """Depth (m) above 0 at which the stress of first loading bends: where the ramp ends."""
         return (self.ramp_depth,)
 
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -192,7 +192,7 @@ def course_names() -> tuple[str, ...]:
 
 
 def course_place(name: str) -> Path:
-    """Path of the file of a built-in course."""
+    """Path of the CSV file of a built-in course; it need not exist."""
     return Path(str(_FOLDER / f"{name}.csv"))
 
 

@@ -106,7 +106,7 @@ def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
 
 
 def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]]) -> tuple[GateGap, ...]:
-    """Gaps at the gates of two tables of the same gates, each row with gate, outcome and time_s or None."""
+    """Differences of times at the gates of two tables of one course; rows have gate, outcome, time_s (or None)."""
     gaps, before = [], 0.0
     for row, other_row in zip(rows, other, strict=True):
         time, other_time = row["time_s"], other_row["time_s"]

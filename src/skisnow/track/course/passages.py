@@ -93,7 +93,7 @@ class CourseResult(Shown):
 
     @property
     def fault(self) -> Passage | None:
-        """The first gate that was not passed, if any."""
+        """First gate that was not passed; None if all were passed."""
         return next((passage for passage in self.passages if passage.outcome != "passed"), None)
 
     def _repr_facts(self) -> Facts:
