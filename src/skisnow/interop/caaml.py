@@ -55,6 +55,7 @@ def caaml_text(pit: SnowPit) -> str:
 
 
 def _profile_xml(pit: SnowPit) -> Iterator[str]:
+    """XML of a snow pit: time, observer, place and measurements."""
     pit_id = re.sub(r"[^\w.-]", "_", pit.name) or "pit"
     yield f"<caaml:SnowProfile {_NAMES} gml:id={quoteattr(f'skisnow-{pit_id}')}>"
     if pit.comment:
@@ -73,6 +74,7 @@ def _profile_xml(pit: SnowPit) -> Iterator[str]:
 
 
 def _place_xml(pit: SnowPit, pit_id: str) -> Iterator[str]:
+    """XML of the pit's place, with elevation (m), aspect, slope angle (°), position, country and region, if known."""
     yield _element_xml("name", pit.name)
     yield _element_xml("obsPointSubType", "snow profile location")
     if pit.elevation is not None:
@@ -93,6 +95,7 @@ def _place_xml(pit: SnowPit, pit_id: str) -> Iterator[str]:
 
 
 def _measurements_xml(pit: SnowPit) -> Iterator[str]:
+    """XML of air temperature, snow height, layers, temperatures, densities, forces, H_V and S_f, if known."""
     if pit.air_temperature_C is not None:
         yield _nested("weatherCond", _element_xml("airTempPres", _number(pit.air_temperature_C), uom="degC"))
     if pit.snow_height is not None:
@@ -115,6 +118,7 @@ def _measurements_xml(pit: SnowPit) -> Iterator[str]:
 
 
 def _layer_xml(layer: SnowLayer) -> str:
+    """XML of a layer with comment, extent, grains and hand hardness; rejects unknown grain forms and hardnesses."""
     parts = [_nested("metaData", _element_xml("comment", layer.comment)) if layer.comment else ""]
     parts.append(_extent(layer))
     if layer.grain_form:
@@ -132,6 +136,7 @@ def _layer_xml(layer: SnowLayer) -> str:
 
 
 def _temperature_xml(observed: DepthTemperature) -> str:
+    """XML of a snow temperature at a depth; rejects one above 0 °C."""
     if observed.temperature_C > 0.0:
         raise ParameterError("snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C").tag(
             "cannot_write", temperature_c=observed.temperature_C
@@ -146,6 +151,7 @@ def _extent(layer: SnowLayer | LayerDensity) -> str:
 
 
 def _forces_xml(profile: ForceProfile) -> str:
+    """XML of a profile of penetration forces (N) over the depth (cm)."""
     method = profile.method if profile.method in METHODS else "other"
     pairs = zip((profile.depth / CM).tolist(), profile.force.tolist(), strict=True)
     rows = " ".join(f"{_number(depth)},{_number(force)}" for depth, force in pairs)
@@ -159,6 +165,7 @@ def _forces_xml(profile: ForceProfile) -> str:
 
 
 def _plate_value(name: str, unit: str, value: PlateValue) -> str:
+    """XML of a mean value with its number of tests and, if known, its interval."""
     ends = "" if value.interval is None else ' low="{}" high="{}"'.format(*map(_number, value.interval))
     return f'<skisnow:{name} uom="{unit}" n="{value.n}"{ends}>{_number(value.value)}</skisnow:{name}>'
 
@@ -174,12 +181,14 @@ def _nested(path: str, inner: str, **attributes: str) -> str:
 
 
 def _element_xml(name: str, text: str, *, uom: str | None = None) -> str:
+    """XML element with an escaped text and, if given, a unit; control characters become spaces."""
     unit = "" if uom is None else f" uom={quoteattr(uom)}"
     allowed = _CONTROL.sub(" ", text)
     return f"<caaml:{name}{unit}>{escape(allowed)}</caaml:{name}>"
 
 
 def _cm_xml(name: str, length: float) -> str:
+    """XML element with a length (m) converted to cm."""
     return _element_xml(name, _number(length / CM), uom="cm")
 
 
@@ -189,6 +198,7 @@ def _number(value: float) -> str:
 
 
 def _require_choice(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
+    """Reject a value that CAAML does not allow; `what` names the field."""
     if value not in allowed:
         raise ParameterError("{field}: {value!r} cannot be written: CAAML allows {allowed}").tag(
             "cannot_write", field=what, value=value, allowed=sorted(allowed)
@@ -196,6 +206,7 @@ def _require_choice(what: str, value: str, allowed: frozenset[str] | tuple[str, 
 
 
 def _timestamp(time: str) -> str:
+    """Time of a pit in CAAML's form, with seconds; rejects another text than a day or a time."""
     if not _TIME.fullmatch(time):
         raise ParameterError(
             "CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10; the pit has {time!r}: give it "

@@ -64,6 +64,7 @@ def write_campaign_netcdf(campaign: Campaign, path: str | Path) -> None:
 
 
 def _global_attributes(campaign: Campaign) -> dict[str, str]:
+    """Attributes of the file: title, place, observers, tools, stated uncertainties, and hashes of the files."""
     tools = {name: {"shape": type(tool).__name__, **asdict(cast("Any", tool))} for name, tool in campaign.tools.items()}
     stated = {
         "gauge_resolution_m": campaign.gauge_resolution,
@@ -99,6 +100,7 @@ def _variables(campaign: Campaign) -> Iterator[_Variable]:
 
 
 def _penetration_variables(tests: PenetrationTests) -> Iterator[_Variable]:
+    """Variables of the penetration tests: one row for each test, then for each reading, also of unloading."""
     of, reading = "penetration_test", "penetration_reading"
     yield from _text_variables(
         of, name=tests.experiment, site=tests.site, tool=tests.tool, spot=tests.spot, cancelled=tests.cancelled
@@ -121,6 +123,7 @@ def _penetration_variables(tests: PenetrationTests) -> Iterator[_Variable]:
 
 
 def _shear_variables(tests: ShearTests) -> Iterator[_Variable]:
+    """Variables of the shear tests: one row for each test, then for each reading of turning, if there are any."""
     of = "shear_test"
     yield from _text_variables(
         of, name=tests.experiment, site=tests.site, plate=tests.plate, spot=tests.spot, cancelled=tests.cancelled
@@ -140,6 +143,7 @@ def _shear_variables(tests: ShearTests) -> Iterator[_Variable]:
 
 
 def _density_variables(samples: DensitySamples) -> Iterator[_Variable]:
+    """Variables of the density samples, in SI."""
     of = "density_sample"
     yield from _text_variables(of, name=samples.sample, site=samples.site, cancelled=samples.cancelled)
     yield _Variable(f"{of}_snow_density", of, samples.snow_density, "kg m-3", "density of the snow")
@@ -150,6 +154,7 @@ def _density_variables(samples: DensitySamples) -> Iterator[_Variable]:
 
 
 def _drop_cone_variables(tests: DropConeTests) -> Iterator[_Variable]:
+    """Variables of the drop-cone tests, in SI."""
     of = "drop_cone_repeat"
     yield from _text_variables(of, test=tests.test, repeat=tests.repeat, site=tests.site, cancelled=tests.cancelled)
     yield _Variable(f"{of}_depth", of, tests.drop_cone_depth, "m", "depth of the drop cone; larger is softer")
@@ -158,6 +163,7 @@ def _drop_cone_variables(tests: DropConeTests) -> Iterator[_Variable]:
 
 
 def _text_variables(dimension: str, **columns: Sequence[str]) -> Iterator[_Variable]:
+    """Text variables of a dimension, each named after its column."""
     for name, values in columns.items():
         meaning = "reason why the experiment does not count" if name == "cancelled" else name
         yield _Variable(f"{dimension}_{name}", dimension, values, "", meaning)
@@ -170,6 +176,7 @@ def _snow_of(dimension: str, density: npt.NDArray[Any], cone_depth: npt.NDArray[
 
 
 def _row_size_variable(dimension: str, reading: str, first: IntArray) -> _Variable:
+    """Variable with the number of readings of each experiment, from the indices of the first ones."""
     name = f"{reading}_row_size"
     return _Variable(name, dimension, np.diff(first), "1", "number of readings of the experiment", sample_of=reading)
 
@@ -181,6 +188,7 @@ def _further(dimension: str, columns: Mapping[str, Sequence[str]]) -> Iterator[_
 
 
 def _write_variable(file: Any, variable: _Variable) -> None:
+    """Write a variable to a NetCDF file: numbers (NaN as MISSING) or texts in UTF-8, with meaning and unit."""
     values = variable.values
     if isinstance(values, np.ndarray):
         whole = np.issubdtype(values.dtype, np.integer)

@@ -104,6 +104,7 @@ def _kind_of_file(path: Path) -> str:
 
 
 def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
+    """Snow pit of a campaign's site, with its means; rejects several sites unless the options name one."""
     from ..estimation.analysis import FEWEST_RESAMPLES, analyse
 
     campaign = read_campaign(source)
@@ -117,6 +118,7 @@ def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
 
 
 def _pit_of_recording(source: Path) -> SnowPit:
+    """Snow pit of a SnowMicroPen recording, with its forces (N) over the depth; pull counts as 0."""
     profile = read_snow_micro_pen(source)
     day = profile.recorded_on
     return SnowPit(
@@ -151,6 +153,7 @@ def _recording_as_layers(source: Path, target: Path, options: ConvertOptions) ->
 
 
 def _to_caaml(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
+    """Conversion that reads a snow pit and writes it as CAAML, with the options' time if the pit has none."""
     def made(source: Path, target: Path, options: ConvertOptions) -> None:
         pit = read(source, options)
         write_caaml(replace(pit, time=pit.time or options.time or ""), target)

@@ -82,6 +82,7 @@ def _tables_with_sites(campaign: Campaign) -> Iterator[tuple[tuple[str, ...], Ma
 
 
 def _cells_of_site(campaign: Campaign, site: str, column: str) -> Iterator[str]:
+    """Non-blank cells of a further column, in the rows of a site in all tables."""
     for sites, further in _tables_with_sites(campaign):
         for name, cell in zip(sites, further.get(column, ()), strict=False):
             if name == site and cell:
@@ -120,6 +121,7 @@ def _samples(table: DensitySamples, site: str) -> Iterator[LayerDensity]:
 
 
 def _used_recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:
+    """Profile and evaluation of each used recording at a site."""
     pen = analysis.snow_micro_pen
     if pen is not None:
         for index, evaluated in enumerate(pen.evaluated):
@@ -128,6 +130,7 @@ def _used_recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroP
 
 
 def _mean_forces(profile: SnowMicroPenProfile, evaluated: EvaluatedRecording) -> ForceProfile:
+    """Mean forces (N) in blocks of equal length below the snow surface; pull counts as 0."""
     size = max(round(BLOCK / profile.sample_distance), 1)
     force = profile.force[round(evaluated.surface / profile.sample_distance) :]
     means = force[: len(force) // size * size].reshape(-1, size).mean(axis=1)
@@ -136,6 +139,7 @@ def _mean_forces(profile: SnowMicroPenProfile, evaluated: EvaluatedRecording) ->
 
 
 def _plate_value(analysis: Analysis, quantity: str, site: str) -> PlateValue | None:
+    """Mean of a quantity at a site, with its interval if it is finite; None without a mean."""
     for row in analysis.site_means:
         if row.quantity == quantity and row.site == site and math.isfinite(row.own.value):
             ends = (row.own.low, row.own.high)

@@ -133,6 +133,7 @@ _OF_ANOTHER_CORE: Final = template(
 
 
 def _merge_parts(out: Path, parts: Sequence[KeptRows]) -> StudyTable:
+    """Table merged from the parts of one study; rejects parts of another study or version, and missing rows."""
     about = [part.about() for part in parts]
     for name, text in (("fingerprint", _OF_ANOTHER_STUDY), ("core", _OF_ANOTHER_CORE)):
         for part, entries in zip(parts, about, strict=True):
