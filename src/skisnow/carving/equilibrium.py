@@ -253,6 +253,7 @@ def rest(
 
 
 def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: object) -> float:
+    """Ratio k_u/H_V, stated or of the snow; 1 with a penetration law, which contradicts a stated one."""
     if penetration is None:
         return unloading_ratio_of(snow, stated)
     if stated is not None:

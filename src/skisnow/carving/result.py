@@ -306,6 +306,7 @@ def _side_force_limit(
 
 
 def _edge_holds(conditions: Conditions, limit: float | None) -> bool:
+    """True if the side force is at most the limit (N), or 0; None as a limit holds no side force."""
     if conditions.side_force == 0.0 or limit is None:
         return conditions.side_force == 0.0
     # a pressure along the base's normal holds a ski that does not twist with nothing to spare

@@ -154,6 +154,7 @@ def _recording_as_layers(source: Path, target: Path, options: ConvertOptions) ->
 
 def _to_caaml(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
     """Conversion that reads a snow pit and writes it as CAAML, with the options' time if the pit has none."""
+
     def made(source: Path, target: Path, options: ConvertOptions) -> None:
         pit = read(source, options)
         write_caaml(replace(pit, time=pit.time or options.time or ""), target)
