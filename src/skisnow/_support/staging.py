@@ -104,6 +104,7 @@ def _finish_or_remove(hidden: Path) -> str | None:
 
 
 def _new_hidden(folder: Path) -> tuple[Path, int | None]:
+    """New hidden folder next to the output, with its lock, or None where the system has no locks."""
     with _lock_folder(folder):
         hidden = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
         lock = _locked(hidden)
@@ -132,6 +133,7 @@ def _carry_out(hidden: Path) -> None:
 
 
 def _list_files(stage: Path) -> list[Path]:
+    """Paths of all files below a stage, relative to it and sorted."""
     return sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
 
 

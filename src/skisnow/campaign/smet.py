@@ -157,7 +157,7 @@ class _Reading:
         return self._refuse(len(self._lines), "", "no [DATA]", allowed, action)
 
     def series(self) -> StationSeries:
-        """All readings of the file with the station."""
+        """Station and readings in SI by field; rejects missing keys, other units and invalid rows."""
         for key in _NEEDED:
             if key not in self._header:
                 self._refuse(self._data, key, "nothing", f"the key {key} in the header", "Add it.")

@@ -161,7 +161,7 @@ def _require_plausible_header(file: str, header: dict[str, Any], size: int) -> N
 
 
 def _text(raw: bytes) -> str:
-    """Text before the first NUL."""
+    """Text (Latin-1) of bytes up to the first NUL, without surrounding spaces."""
     return raw.split(b"\0", 1)[0].decode("latin-1").strip()
 
 

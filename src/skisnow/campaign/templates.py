@@ -89,7 +89,7 @@ def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
 
 
 def campaign_toml(name: str) -> str:
-    """Text of campaign.toml of a new campaign with this name."""
+    """Text of campaign.toml of a new campaign: keys to fill in, and explanations of all columns as comments."""
     keys = "".join(_toml_line(*entry) for entry in keys_with_values(name))
     tables = "".join(
         f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explanations())

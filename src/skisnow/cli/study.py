@@ -54,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run_whole(options: argparse.Namespace, study: Study) -> int:
+    """Compute a study with its figure; returns the exit status, which is 1 if all points failed."""
     from ..studies import run_study
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
@@ -75,6 +76,7 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
 
 
 def _run_part(options: argparse.Namespace, study: Study) -> int:
+    """Compute the part of a study that --shard names, and print its file; returns the exit status."""
     from ..studies import Shard, run_shard
 
     if options.figure is not None:
@@ -90,10 +92,12 @@ def _run_part(options: argparse.Namespace, study: Study) -> int:
 
 
 def _print_points(progress: Progress) -> Callable[[int, int], None]:
+    """Callback that shows the numbers of finished and all points as progress."""
     return lambda done, total: progress(f"{done} of {total} points")
 
 
 def _merge_shards(options: argparse.Namespace) -> int:
+    """Put the parts of a study together into its table; returns the exit status, 1 if all points failed."""
     from ..studies import merge_shards
 
     if options.figure is not None:
@@ -104,6 +108,7 @@ def _merge_shards(options: argparse.Namespace) -> int:
 
 
 def _all_points_failed(place: Path, table: StudyTable) -> bool:
+    """True, after a message on standard error, if every point of a table failed."""
     if table.tally().failed < len(table.rows):
         return False
     print(f"skisnow: not one point could be asked; {place} was not written.", file=sys.stderr)

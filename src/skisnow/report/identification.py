@@ -74,7 +74,7 @@ def fits_csv(result: Identification) -> str:
 
 
 def identify_page(result: Identification, pictures: list[Picture]) -> str:
-    """The HTML of the report in the current language."""
+    """HTML of an identification's report in the current language."""
     fits = [picture for picture in pictures if picture.name != "profiles"]
     profiles = [picture for picture in pictures if picture.name == "profiles"]
     outcome = outcome_words(result.outcome)

@@ -183,7 +183,7 @@ class CampaignSource:
 
     @cached_property
     def place(self) -> Path:
-        """Temporary folder of the reports."""
+        """Temporary folder for reports, removed together with this object."""
         place = mkdtemp(prefix="skisnow-analysis-")
         weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
         return Path(place)
@@ -201,7 +201,7 @@ class CampaignSource:
         return self._computed.get(choice)
 
     async def analysed(self, choice: Choice) -> Numbers | Refusal:
-        """Analysis of a choice, from the cache or computed now."""
+        """Numbers of an analysis with a choice, from the cache or computed now; a Refusal if there are none."""
         async with self._computing:
             if (cached := self.cached(choice)) is not None:
                 return cached

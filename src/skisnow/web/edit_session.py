@@ -148,7 +148,7 @@ def quick_results(campaign: Campaign, site: str) -> QuickResults:
 
 
 def _flag_sentences(problems: list[Problem]) -> dict[TestKey, dict[str, str]]:
-    """Sentences of the quality flags of each test, by code."""
+    """Sentences about quality flags by test and code, with the value found and the action."""
     sentences: dict[TestKey, dict[str, str]] = {}
     for problem in problems:
         key, flag = (problem.file, problem.experiment or ""), QUALITY_FLAGS[problem.code].sentence

@@ -75,7 +75,7 @@ def button(text: str, act: Callable[..., Any] | None, kind: str = "", *, once: b
 
 
 def link(text: str, address: str, kind: str = "") -> ui.link:
-    """Add a link with the size of a button."""
+    """Add a link that looks like a button, in the language of the page; ``kind``: main or small."""
     return ui.link(said(text), address).classes(f"act {kind}".strip())
 
 
@@ -134,7 +134,7 @@ def named(element: AnyElement, name: str) -> AnyElement:
 
 
 def add_items(items: Iterable[str], add: Callable[[str], object] = Words) -> None:
-    """Add the items of a list, each by a function that adds its text."""
+    """Add one list item per text, filled by `add`."""
     for item in items:
         with ui.element("li"):
             add(item)
@@ -219,7 +219,7 @@ def page_frame(title: str, *, here: str = "", ahead: bool = False, keeps: bool =
 
 
 def _language_links() -> None:
-    """Add links to this page in the other languages."""
+    """Add links that show this page in each other language."""
     request = ui.context.client.request
     back = quote(request.url.path + (f"?{request.url.query}" if request.url.query else ""), safe="")
     for code, name in languages().items():

@@ -139,7 +139,7 @@ def check_ski_texts(text: str, table: str) -> None:
 
 
 def texts_of_ski(ski: Ski) -> tuple[str, str]:
-    """Texts of a ski's file and table."""
+    """Text of a ski file for a ski, and of the CSV table that it names."""
     with TemporaryDirectory(prefix="skisnow-ski-") as name:
         place = Path(name) / FILE
         write_ski(ski, place)
@@ -159,7 +159,7 @@ def _require_no_other_file(text: str) -> None:
 
 
 def _without_folder(folder: str, message: str) -> str:
-    """A message without the path of a temporary folder."""
+    """Copy of a message without the path of a temporary folder, so that only file names are left."""
     return replaced(message, {f"{place / 'x'}"[:-1]: "" for place in (Path(folder), Path(folder).resolve())})
 
 

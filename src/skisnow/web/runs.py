@@ -96,12 +96,12 @@ class FinishedRun:
 
     @property
     def outcome_in_words(self) -> str:
-        """Words of the outcome, which can be translated."""
+        """Outcome of the run in words of the current language."""
         return outcome_words(self.outcome)
 
     @property
     def extent(self) -> str:
-        """Length and time in words."""
+        """Message with length (m) and simulated time (s) of the run."""
         return Message(
             "{run_length_m:.1f} m in {simulated_s:.2f} s", run_length_m=self.run_length_m, simulated_s=self.simulated_s
         )
@@ -238,7 +238,7 @@ class Runs:
             self._keep(ended if renamed is None else replace(ended, title=renamed.title))
 
     def _command(self, job: Job) -> list[str]:
-        """Arguments of the command line for a job."""
+        """Arguments of ``skisnow simulate`` for a job."""
         changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
         return ["simulate", job.scenario, *changes, "--language", job.language, "--out", str(self.folder / job.name)]
 

@@ -79,7 +79,7 @@ class SkiEditor:
         return str(self._text.value or ""), str(self._csv.value or "")
 
     def edit(self) -> SkiEditInput:
-        """Current values of the fields."""
+        """File and table from which the edited ski begins, with the typed factors by key."""
         factors = {key: str(factor.value or "") for key, factor in self._factors.items()}
         return SkiEditInput(*self._base, factors)
 
@@ -156,7 +156,7 @@ MOST_FILES: Final = 3
 
 
 def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
-    """Add the address that receives skis."""
+    """Add the address that stores uploaded ski files in the lab."""
 
     def store(form: FormData) -> str:
         missing = Message("no file was chosen; choose the .toml file of a ski")

@@ -36,7 +36,7 @@ class Range:
     log: bool = False
 
     def toml(self) -> str:
-        """The range as in study.toml."""
+        """TOML of the range: from, to, number of values, and log if it is logarithmic."""
         log = ", log = true" if self.log else ""
         return f"{{ from = {self.low!r}, to = {self.high!r}, n = {self.n}{log} }}"
 
@@ -85,7 +85,7 @@ class StudyQuestion:
         return "\n".join([*lines, "", "[fixed]", *fixed, "", "[grid]", *listed, *varied, ""])
 
     def fixed_words(self) -> dict[str, str]:
-        """Fixed numbers as texts by key."""
+        """Texts of the fixed inputs that are keys of the subject, by key."""
         return {name: typed_form(value) for name, value in self.fixed.items() if name in study_keys(self.of)}
 
     def varied_words(self) -> str:

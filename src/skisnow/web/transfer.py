@@ -39,7 +39,7 @@ IMPORT: Final = "/import"
 
 
 def add_transfer(app: FastAPI, lab: Lab) -> None:
-    """Add the addresses for import and export of campaigns."""
+    """Add the addresses that import uploaded campaigns and export stored ones as zip files."""
 
     def store(form: FormData) -> str:
         missing = Message("no file was chosen; choose the files of a campaign, its folder, or a zip of it")
@@ -111,7 +111,7 @@ class FileImports:
         self._folder = lab.runs / FOLDER
 
     def keep(self, name: str, content: IO[bytes]) -> str:
-        """Keep an uploaded file; returns its id."""
+        """Store an uploaded file with its name for an import; returns the id of the new import."""
         id_ = secrets.token_hex(6)
         place = self._folder / id_
         place.mkdir(parents=True)

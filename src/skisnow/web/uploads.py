@@ -266,7 +266,7 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
 
 
 def _limit_error(bounds: Bounds) -> ParameterError:
-    """Error for work that ended its process or exceeded the limits."""
+    """Error that reading an upload ended its process, or took more time or memory than allowed."""
     return ParameterError(
         "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
         "check the file"

@@ -154,7 +154,7 @@ class JobCard:
         raise NotImplementedError
 
     def inputs(self, job: Any) -> tuple[str, ...]:
-        """Subject and inputs of the job in words."""
+        """Subject and inputs of a job in words; each subclass must define it."""
         raise NotImplementedError
 
     def show(self, job: Any) -> None:

@@ -158,6 +158,7 @@ class KeptRows:
         return self._select_checked_rows("order by number")
 
     def _select_checked_rows(self, which: str, *parameters: object) -> Iterator[NumberedText]:
+        """Numbers and JSON texts of rows chosen by SQL; a damage error if a checksum does not match."""
         for number, text, checksum in self._run_query(f"select number, row, checksum from rows {which}", *parameters):
             if not isinstance(text, str) or checksum != _checksum(number, text):
                 raise _damage_error(self.path, f"the row of point {number + 1} has changed")
@@ -200,10 +201,12 @@ def _statements(database: sqlite3.Connection) -> list[tuple[str, str]]:
 
 
 def _checksum(number: int, text: str) -> int:
+    """CRC-32 of a point's number and the JSON text of its row."""
     return zlib.crc32(f"{number} {text}".encode("utf-8", "surrogatepass"))
 
 
 def _checksum_of(about: Mapping[str, object]) -> str:
+    """CRC-32, as text, of the values that describe the points."""
     return str(zlib.crc32(repr(sorted(about.items(), key=str)).encode("utf-8", "surrogatepass")))
 
 

@@ -61,6 +61,7 @@ def _checked_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _integer(digits: str) -> int:
+    """Whole number of a JSON text; rejects too many digits."""
     if len(digits) > _MOST_DIGITS:
         raise ContentError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
             "number_too_large", count=len(digits), largest=LARGEST_WHOLE

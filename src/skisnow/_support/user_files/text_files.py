@@ -163,6 +163,7 @@ def too_deep(line: int | None = None) -> ContentError:
 
 
 def _require_text(text: str, place: Place, longest: int) -> None:
+    """Reject a text that is too long or has a NUL or a surrogate; `place`: its place for the message."""
     if len(text) > longest:
         raise ContentError("{place} has {count} characters; allowed are {longest}. Shorten it.").tag(
             "text_too_long", place=named(place), count=len(text), longest=longest
@@ -294,4 +295,5 @@ def _require_short(text: str) -> None:
 
 
 def _line_of(text: str, token: re.Match[str]) -> int:
+    """Line number of a token, from 1."""
     return text.count("\n", 0, token.start()) + 1

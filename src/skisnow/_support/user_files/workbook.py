@@ -98,6 +98,7 @@ def sheet_layouts(data: bytes) -> dict[str, Layout]:
 
 
 def _read_layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
+    """Merged, hidden and struck-out cells of a sheet from its XML, with rows and columns counted from 0."""
     from openpyxl.utils.cell import range_boundaries
 
     text = archive.read(sheet._worksheet_path)
@@ -259,11 +260,13 @@ class _Part:
         self._in_cell: set[str] = set()
 
     def _refuse_document_type(self, *_: object) -> None:
+        """Reject a document type in a part of the workbook."""
         raise ContentError(
             "The workbook has a document type in its part {part}, which no spreadsheet program writes."
         ).tag("not_readable", part=self._name)
 
     def _on_begin(self, name: str, attributes: dict[str, str]) -> None:
+        """Count an element and record the cell it begins; rejects too many or too deep elements."""
         self._elements += 1
         self._depth += 1
         if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
@@ -280,10 +283,12 @@ class _Part:
         self._is_value = local == "v"
 
     def _on_text(self, text: str) -> None:
+        """Record that the present cell has a value."""
         if self._is_value and text.strip():
             self._in_cell.add("v")
 
     def _on_end(self, name: str) -> None:
+        """End an element; rejects a cell with a formula but without a stored value."""
         self._depth -= 1
         self._is_value = False
         if name.endswith(" c") and self._in_cell == {"f"}:

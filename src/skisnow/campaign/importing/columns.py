@@ -215,7 +215,7 @@ def _is_unclear(note: Note) -> bool:
 
 
 def gauge_steps_mm(notes: Iterable[Note]) -> set[float]:
-    """Steps of depth gauges that notes state (mm)."""
+    """Resolutions of the depth gauge (mm) found in the texts of notes."""
     return {length_mm(match[2], match[3]) for note in notes for match in _GAUGE.finditer(note.text)}
 
 

@@ -126,11 +126,11 @@ class RawFiles:
         self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
     def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
-        """Report a file that is not valid text."""
+        """Add the problem of a file that is not valid text."""
         self.problems.append(error("unreadable_file", name, **vars(failure)))
 
     def report_encoding(self, name: str, foreign_encoding: str | None) -> None:
-        """Report an encoding other than UTF-8."""
+        """Add a note, which needs no action, about an encoding other than UTF-8; nothing for None."""
         if foreign_encoding is None:
             return
         action = Message("It was read as such; save as UTF-8 if letters look wrong in the report.")

@@ -115,7 +115,7 @@ class NumberCollector:
         self._parts: list[FloatArray] = []
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:
-        """Convert and store numbers in the unit of the column; text, gaps and values out of range are errors."""
+        """Convert and store numbers in the column's unit; text, required gaps and values out of range are errors."""
         values = numbers(cells, self._mark)
         name = self._column.name
         for index in np.flatnonzero(np.isnan(values)).tolist():

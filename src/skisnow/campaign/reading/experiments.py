@@ -99,7 +99,7 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def check_one_number(table: Table, blocks: Blocks, column: str) -> Iterator[Problem]:
-    """Errors for experiments with two numbers in a column."""
+    """Errors for rows of an experiment whose number in a column differs from its first one; gaps are allowed."""
     values, blank = table.numbers[column], table.names[table.form.key].is_blank
     reference = blocks.first_chosen(~np.isnan(values))[blocks.of_row]
     differs = (values != values[reference]) & ~np.isnan(values) & ~blank
@@ -109,7 +109,7 @@ def check_one_number(table: Table, blocks: Blocks, column: str) -> Iterator[Prob
 
 
 def check_one_site(table: Table) -> Iterator[Problem]:
-    """Errors for tests with two sites."""
+    """Errors for rows of a test at another site than its first row; nothing if a column is missing."""
     key, site = table.names[table.form.key], table.names["site"]
     if table.absent & {table.form.key, "site"}:
         return
@@ -150,7 +150,7 @@ def _mixed_error(table: Table, row: int, reference: int, column: str, value: str
 
 
 def penetration_tests(table: Table) -> PenetrationTests:
-    """Convert a valid table to penetration experiments."""
+    """Penetration experiments in SI from a table without errors, with unloading readings apart."""
     blocks = Blocks.of_runs(table.names["experiment"])
     taken_off = is_unloading(table.names[BRANCH])
     is_unloaded = bool(taken_off.any())
@@ -214,7 +214,7 @@ def shear_tests(table: Table) -> ShearTests:
 
 
 def density_samples(table: Table) -> DensitySamples:
-    """Convert a valid table to density samples."""
+    """Density samples in SI from a table without errors."""
     return DensitySamples(
         **single_rows(table),
         snow_density=table.numbers["snow_density_kg_per_m3"],
@@ -224,7 +224,7 @@ def density_samples(table: Table) -> DensitySamples:
 
 
 def drop_cone_tests(table: Table) -> DropConeTests:
-    """Convert a valid table to the repeats of drop-cone tests."""
+    """Repeats of drop-cone tests in SI from a table without errors."""
     return DropConeTests(**single_rows(table), drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM)
 
 

@@ -160,7 +160,7 @@ class UnitConversion:
 
     @property
     def changes(self) -> bool:
-        """True if the units differ."""
+        """True if a conversion changes numbers, because the units differ."""
         return (self.factor, self.shift) != (1.0, 0.0)
 
     def convert(self, values: FloatArray) -> FloatArray:

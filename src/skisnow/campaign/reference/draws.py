@@ -197,7 +197,7 @@ def add_turning(
 
 
 def density(generator: np.random.Generator) -> DensitySamples:
-    """Draw the density samples of the penetration sites."""
+    """Density samples (kg/m³) of all sites with penetration tests, drawn about each site's density."""
     sites = [site for site in design.PENETRATION_SITES for _ in range(design.DENSITY_SAMPLES)]
     centre = np.array([site.snow_density for site in sites])
     value = _normal_within(generator, centre, design.DENSITY_SD, design.DENSITY_RANGE)

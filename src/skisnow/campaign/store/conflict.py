@@ -52,7 +52,7 @@ class Conflict:
 
     @property
     def entries(self) -> tuple[JournalEntry, ...]:
-        """Entries that only one store has."""
+        """Entries that only one of the two stores has, those of this store first."""
         return (*self.entries_here, *self.entries_there)
 
     @property
@@ -95,7 +95,7 @@ class Conflict:
 
     @property
     def what(self) -> str:
-        """What contradicts in the two stores, in words."""
+        """Sentence on what the two stores contradict each other in."""
         return _KINDS[self.kind]
 
     @property

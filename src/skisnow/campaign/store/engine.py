@@ -106,7 +106,7 @@ def reading(engine: Engine) -> Iterator[Connection]:
 
 @contextmanager
 def writing(engine: Engine) -> Iterator[Connection]:
-    """Connection with the write lock, in one transaction."""
+    """Connection in one transaction that has the write lock from its start; it is undone after an exception."""
     with engine.connect() as connection, connection.execution_options(skisnow_begin="IMMEDIATE").begin():
         yield connection
 

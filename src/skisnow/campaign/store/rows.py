@@ -50,7 +50,7 @@ class StoredCampaign:
 
     @property
     def n_bytes(self) -> int:
-        """Total size of its files in bytes."""
+        """Total size of the campaign's files in bytes."""
         return sum(file.size for file in self.files)
 
 
@@ -97,7 +97,7 @@ def pick_id(beginning: str, names: Mapping[str, object]) -> str:
 
 
 def damage_error(what: str) -> StoreError:
-    """Error that says what is damaged in the store, with a remedy."""
+    """StoreError that `what` is damaged in the store, with the advice to restore a backup."""
     return StoreError("{what} is damaged in the store; `skisnow store verify` lists all damage. Restore a backup.").tag(
         "damaged", what=what
     )

@@ -191,7 +191,7 @@ class _Sync:
 
 
 def _damage(store: Store, journal_id: str) -> str:
-    """Sentence on the damage of a journal in a store, or ""."""
+    """Error text if a campaign in entry cannot be read whole from a store; "" if it can."""
     try:
         with reading(store.engine) as connection:
             entries_by_uid(connection, journal_id, entry_index(connection, journal_id).subject)

@@ -41,7 +41,7 @@ def _term_text(letter: str, form: str, measure: str) -> str:
 
 
 def model_name(model_id: str) -> str:
-    """Short name of a candidate model for tables and sentences."""
+    """Words for the candidate model with this id; StopIteration if it is unknown."""
     return next(model.words for model in MODELS if model.id == model_id)
 
 
@@ -104,7 +104,7 @@ def _coefficients(row: Json) -> list[tuple[float | None, Any]]:
 
 
 def nested_table(data: ReportData) -> Table:
-    """Table of the F tests between nested models."""
+    """Table of the F tests between nested models: fuller and simpler one, F, degrees of freedom, p."""
     records = [
         row
         | {"full": model_name(row["full"]), "reduced": model_name(row["reduced"])}

@@ -222,7 +222,7 @@ def _plot_against_hardness(
 
 
 def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
-    """Snow hardness with its interval against density (Fig 6)."""
+    """Figure of H_V with intervals against snow density (kg/m³), the paper's Fig 6, or why it is left out."""
     name, title = "fig06_hardness_density", Message("Snow hardness against density")
     if not len(data.pressed):
         return LeftOut(name, title, Message("no penetration experiment is used"))

@@ -32,7 +32,7 @@ _DISPLACEMENT: Final = Column(
 
 
 def penetration_table(data: ReportData) -> Table:
-    """Every penetration experiment with its three hardnesses."""
+    """Table with one row per penetration experiment: H_e, H_A and H_V with intervals, and its flags."""
     columns = (
         EXPERIMENT,
         SITE,
@@ -143,7 +143,7 @@ def displacement_table(data: ReportData) -> Table:
 
 
 def displacement_sites_table(data: ReportData) -> Table:
-    """Shear displacement u_y, by site."""
+    """Table with the mean shear displacement u_y of each site and its 95 % interval."""
     return _sites_table(
         "shear_displacement_sites",
         Message("Shear displacement by site: geometric means with 95 % intervals from the scatter between the tests."),

@@ -62,7 +62,7 @@ def _draw_line(
 
 
 def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
-    """Failure shear force against plate depth (Fig 7)."""
+    """Figure of failure shear force (N) against depth (mm), the paper's Fig 7, or why it is left out."""
     name = "fig07_shear_force_depth"
     if not len(data.sheared):
         return LeftOut(name, Message("Failure shear force against depth"), Message("no shear experiment is used"))

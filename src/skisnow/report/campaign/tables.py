@@ -114,7 +114,7 @@ def group_comparison_table(data: ReportData) -> Table:
 
 
 def published_table(data: ReportData) -> Table:
-    """Published values next to those of this campaign."""
+    """Table of published values with those of this campaign and their ratio."""
     records = [
         row
         | {
@@ -279,7 +279,7 @@ def published_relations_table(data: ReportData) -> Table:
 
 
 def files_table(data: ReportData) -> Table:
-    """Every campaign file with its checksum."""
+    """Table of the files that were read, each with its SHA-256."""
     return Table(
         "files",
         Message("Files read, with the SHA-256 of their bytes."),
@@ -309,7 +309,7 @@ def corrections_table(data: ReportData) -> Table:
 
 
 def warnings_table(data: ReportData) -> Table:
-    """Every warning of the campaign reader."""
+    """Table with one row per warning that reading the campaign gave."""
     names = ("severity", "code", "file", "row", "column", "experiment", "value", "allowed", "action")
     caption = Message("Warnings of reading the campaign's files.")
     columns = tuple(_CELL_HEADERS[name] for name in names)
@@ -317,7 +317,7 @@ def warnings_table(data: ReportData) -> Table:
 
 
 def quality_flags_table(data: ReportData) -> Table:
-    """Every quality flag with the experiments that have it."""
+    """Table with one row per quality flag: meaning, whether it excludes, and its experiments."""
     excluding, rows = data.results["campaign"]["excluding"], []
     for code, flag in QUALITY_FLAGS.items():
         penetration, shear = (

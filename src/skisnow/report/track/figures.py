@@ -83,7 +83,7 @@ def _new_map(summary: TrackSummary, lowest_mm: float) -> tuple[Figure, Axes]:
 
 
 def turns_are_distinct(summary: TrackSummary) -> bool:
-    """True if the turns are drawn separately."""
+    """True if each turn is drawn in a colour: the track is a single run with few turns."""
     return len(summary.day.runs) == 1 and 0 < len(summary.turns) <= MOST_TURNS
 
 

@@ -155,7 +155,7 @@ def track_comparison(comparison: Comparison) -> Figure:
 
 
 def comparison_drawing(comparison: Comparison) -> Drawing:
-    """Figure of `track_comparison` with its caption."""
+    """Figure that compares two tracks from above and by their distance, with its caption."""
     names = dict(zip(("simulated", "measured"), comparison.names, strict=True))
     caption = prose("{simulated} and {measured} from above, and the distance between them along the latter.", **names)
     alt = Message("{simulated} and {measured} from above, and the distance between them.", **names)

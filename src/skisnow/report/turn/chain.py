@@ -157,7 +157,7 @@ def maximum_distance(run: Run, reference: Run) -> float | None:
 
 
 def middle_track(run: Run) -> TimedTrack:
-    """Track of the middle between the boots from above."""
+    """Time (s), x and y (m) of the middle between the boots over a run."""
     return TimedTrack(run.time, run.place[:, 0], run.place[:, 1])
 
 
@@ -220,7 +220,7 @@ class BandInput:
 
     @property
     def in_words(self) -> str:
-        """Spread, distribution and origin in words."""
+        """Message about the distribution of an ensemble's input: measured interval or prior, with its origin."""
         if self.spread == "measured":
             return Message("measured: log-normal with the 95 % interval of {origin}", origin=self.origin)
         return Message("prior: even in its logarithm; {origin}", origin=self.origin)

@@ -163,7 +163,7 @@ class DepthsAfterWaiting:
                 asking_button(Message("Store what was read after waiting"), self._store)
 
     def focus(self) -> None:
-        """Put the focus on the first unstored field."""
+        """Put the focus on the first field whose depth is not stored; there must be one."""
         self._fields[next(iter(self.unstored))].depth.run_method("focus")
 
     def _store(self) -> bool:

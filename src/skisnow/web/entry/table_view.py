@@ -48,7 +48,7 @@ class TableView:
                 self.changes_place = ui.element("div")
 
     def clear(self) -> None:
-        """Remove the form and the changes."""
+        """Remove the elements of the form and of the changes from the page."""
         self.form_place.clear()
         self.changes_place.clear()
 
@@ -57,7 +57,7 @@ class TableView:
         return self.session.test(self.file, name)
 
     def label(self, column: str) -> str:
-        """Label of a column, with the unit of its cells."""
+        """Label of a column with the unit in which this campaign's file has it."""
         return label(column, unit=self.session.unit(self.file, column))
 
     @property

@@ -341,7 +341,7 @@ class AnalysisView:
 
 
 def _add_folded(words: str, fill: Callable[[], object]) -> None:
-    """Add a folded section that is filled when it is opened."""
+    """Add a folded section, which `fill` fills when it is opened for the first time."""
     details = folded(words)
 
     def opened() -> None:

@@ -193,21 +193,21 @@ class CarvedTurn:
         raise NotImplementedError
 
     def add_sliders(self, sliders: Mapping[str, tuple[str, Sequence[str], str]]) -> None:
-        """Add a slider for each key: words, stops, start."""
+        """Add a slider for each input; the tuple has its label, allowed texts and start."""
         with ui.element("div").classes("sliders"):
             for key, (words, stops, start) in sliders.items():
                 self.sliders[key] = Slider(words, stops, start, self.ask)
 
     def add_status(self) -> None:
-        """Add the line with the outcome in words."""
+        """Add the line that shows the outcome, at first that it is being computed."""
         self._status = Words(COMPUTING).classes("status").props("role=status")
 
     def add_facts(self) -> None:
-        """Add the element for the table of results."""
+        """Add the empty element for the table of results."""
         self._facts = ui.element("div").classes("table")
 
     def add_charts(self) -> None:
-        """Add the charts of quantities along the ski."""
+        """Add an empty chart along the ski for each panel."""
         titles = {key: (PANELS[key], Message("{title} along the ski", title=PANELS[key])) for key in self.panels}
         self._charts = {key: LineChart(ALONG, *title, height=self.height, ends=ENDS) for key, title in titles.items()}
 
@@ -360,6 +360,6 @@ class _CarvePage(CarvedTurn):
             menu.on_value_change(self.ask)
 
     def asked(self) -> CarveInputs:
-        """Each chosen ski in the same turn."""
+        """Inputs of carve for each chosen ski, one or two, with the snow's k_u/H_V."""
         names = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]
         return self.inputs(map(self._skis.word, names), float(str(self._ratio.value)))

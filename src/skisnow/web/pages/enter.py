@@ -58,7 +58,7 @@ def add_page(lab: Lab) -> None:
 
 
 def _show_series(view: TableView, entry_list: EntryList, test: str, head: dict[str, str]) -> None:
-    """Show the form of a series, or of a new one."""
+    """Show the form of a series with rows, or of a new one; with a valid `head` it has begun already."""
     series = SeriesForm(view, entry_list)
     receive_offline_readings(view.session, series.show_offline_readings)
     if test and not view.test(test).history and _is_head(view, head):
@@ -131,7 +131,7 @@ class ImportedTestForm:
         self._fields: dict[tuple[int, ...], dict[str, Field]] = {}
 
     def show(self) -> None:
-        """Show the current cells of the test."""
+        """Draw the form of an imported test with its current cells and the button to correct them."""
         test, rows = self._view.test(self._name), self._table.tests[self._name]
         cells = test.rows[0].cells
         cancelled = next(filter(None, (cells.get(cell_key(line, "status"), "") for line in rows)), "")

@@ -127,7 +127,7 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
 
 
 def _two_tracks_form(names: list[str]) -> None:
-    """Form that compares two measured tracks, seen from above."""
+    """Add the form that compares two measured tracks from above; nothing for fewer than two."""
     if len(names) < 2:
         return
     with ui.element("form").props(f'action="{TURNS}" method="get"').classes("acts"):

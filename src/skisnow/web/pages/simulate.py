@@ -257,7 +257,7 @@ def basic(values: Mapping[str, Any]) -> list[str]:
 
 
 def expert(values: Mapping[str, Any]) -> list[str]:
-    """Keys of the expert form of a scenario."""
+    """Keys of a scenario that the page offers under Expert inputs."""
     from ...scenario.keys import PATH_KEYS, SCENARIO_KEYS
 
     elsewhere = {*basic(values), *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS}
@@ -290,7 +290,7 @@ def _keep_course(courses: LabCourses, form: FormData) -> str:
 
 
 def _course_form() -> None:
-    """Form that uploads a course from a CSV or GPX file."""
+    """Add the folded form that uploads a course as CSV or GPX."""
     with folded(Message("Add a course")):
         sentence(
             Message(

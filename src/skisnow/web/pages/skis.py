@@ -179,7 +179,7 @@ class _SkisPage:
             link(Message("Carve both side by side"), address("/carve", ski=first, other=name), "main")
 
     def show_added(self, name: str) -> None:
-        """Show that a measured ski was added."""
+        """Tell the user that the ski `name` was added to the lab."""
         with self._told:
             sentence(
                 Message("The ski {name} is added. Carve and Simulate have it too; below it can be changed.", name=name),

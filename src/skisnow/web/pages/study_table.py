@@ -91,7 +91,7 @@ def add_page(lab: Lab) -> None:
 
 
 def _show_inputs(job: Job | None) -> None:
-    """Show the varied and the fixed inputs of a study."""
+    """Show the varied and the fixed inputs of a study's job; nothing for None."""
     if job is not None:
         keys = study_keys(job.scenario)
         sentence(job.given, "quiet")
