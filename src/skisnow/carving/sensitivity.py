@@ -310,7 +310,7 @@ class CarveDerivatives:
         return out
 
     def by_tables(self, output: str) -> FloatArray:
-        """Derivatives of an output by the tables of the ski, as of `TableGrowth` (5, rows)."""
+        """Derivatives of an output by station, width, base height, EI and GJ of each table row, shape (5, rows)."""
         gradient, model, u = self._gradient(output), self.request.model, self.at.solution.u
         growth = gradient.output
         if gradient.by_tables is None:

@@ -183,7 +183,7 @@ class ShapeGradient:
     by_edge: FloatArray
 
     def by_tables(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """Derivatives by the ski's tables, as of `TableGrowth` (5, rows)."""
+        """Derivatives by station, width, base height, EI and GJ of each row of the ski's tables, shape (5, rows)."""
         station, rows = model.ski.station.tobytes(), len(model.ski.station)
         mesh, out = _mesh(station, model.clamp_length, elements), np.zeros((5, rows))
         out[0] = self._by_stations(model, elements, u, adjoint)

@@ -275,7 +275,7 @@ class SnowField(Shown):
 
     @property
     def friction_in_python(self) -> FrictionLaw | None:
-        """The friction law, if the core does not have it."""
+        """The friction law if it is evaluated in Python; None for a number or a law that the core has."""
         known = (ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction)
         return (
             self.friction if isinstance(self.friction, FrictionLaw) and not isinstance(self.friction, known) else None

@@ -235,7 +235,7 @@ class SeriesFit:
         return _Reduced(hh, hg, hd, rh, gg, gd, dd, right_g, right_d)
 
     def _posterior(self, reduced: _Reduced) -> _Posterior:
-        """(g, δ) of each series with the present spreads."""
+        """Means and covariances of g and δ (m) of each series, with the present spreads."""
         of_g, of_d = self._to_series(1.0 / self._spreads.layering2), self._to_series(1.0 / self._spreads.seating2)
         gg, dd = reduced.gg + of_g, reduced.dd + of_d
         determinant = gg * dd - reduced.gd**2

@@ -50,7 +50,7 @@ def write_caaml(pit: SnowPit, path: str | Path) -> Path:
 
 
 def caaml_text(pit: SnowPit) -> str:
-    """Text of the CAAML file of a snow pit; see `write_caaml`."""
+    """Text of a CAAML file with a snow pit; rejects values that CAAML does not allow."""
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(_profile_xml(pit)) + "\n"
 
 

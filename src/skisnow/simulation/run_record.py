@@ -134,7 +134,7 @@ class Record:
         )
 
     def _moved_tracks(self, boots: BootHistory, depth: FloatArray) -> FloatArray:
-        """Tracks (n, 2, 3) as of `_tracks`, for boots that move against the sledge."""
+        """Track (n, 2, 3) of each ski, where it bears the load, for boots that move against the sledge."""
         scenario, at_boot = self.setup.scenario, self.setup.scenario.ski.at(0.0)
         left, off = boots.axes[:, :, 1], boots.axes[:, :, 2]
         side = side_of_load(left[..., 2], depth, float(at_boot.width))

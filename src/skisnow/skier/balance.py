@@ -228,7 +228,7 @@ class BalancedSkier:
         return self.posture.poses()
 
     def decide(self, moment: Moment, dt: float) -> None:
-        """Look, decide, and move the body for a period (s)."""
+        """Observe the moment, get the controller's command, and move the boots over a period `dt` (s)."""
         sledge, control = self.scenario.sledge, self.controller
         assert control is not None
         normal, gravity = self._stand_on(*moment.position[:2].tolist())

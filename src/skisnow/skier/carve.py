@@ -81,7 +81,7 @@ class Steering(Protocol):
     """Interface of steerings: desired acceleration to the left."""
 
     def acceleration(self, at: Underway, carving: float) -> float:
-        """To the left (m/s²), where a carve in balance has so much of it."""
+        """Desired acceleration to the left (m/s²); `carving`: size of that of a carve in balance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class Pursuit:
     sight: float = SIGHT
 
     def acceleration(self, at: Underway, carving: float) -> float:
-        """Acceleration of the line, a time ahead, and of the return to it."""
+        """Acceleration (m/s²) that follows the line at the place `sight` (s) ahead, and returns to it."""
         del carving
         speed = at.speed
         turned = 0.5 * at.acceleration * self.sight / max(speed, 1.0)

@@ -60,7 +60,7 @@ brake by 1 m/s² more than by 45° (found by trial: two slaloms on measured slop
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """The edge angle that gives an acceleration.
+    """Map from an acceleration to the edge angle at which a carve reaches it.
 
     radius: radius of the sidecut (m).
     gravity: along the snow's normal (m/s²).

@@ -204,7 +204,7 @@ class RecedingLine:
         )
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
-        """Along the path and the line at the present speed."""
+        """Planned force and course along the joining path and then the line, at the present speed."""
         x, y = seen.place
         until = self._join(x, y, max(-STEEPEST_COURSE, min(STEEPEST_COURSE, seen.course)))
         assert self._quintic is not None
@@ -227,7 +227,7 @@ class RecedingLine:
         return Planned(np.array(force), np.array(course))
 
     def _join(self, x: float, y: float, course: float) -> float:
-        """Lay the path to the apex that is joined; gives its x (m)."""
+        """Find the path to the next apex that can be joined, store it, and return the apex's x (m)."""
         place, aside = self._next_apex(x)
         i = min(max(round((place - self._first) / TABLE_STEP), 0), len(self._bend) - 1)
         way = place - x
@@ -251,7 +251,7 @@ class RecedingLine:
         return self._bend[min(i + 1, len(self._bend) - 1)]
 
     def _next_apex(self, x: float) -> tuple[float, float]:
-        """Place (m) along and across the line of the next apex after x; behind the last, one as far on as before."""
+        """Place (m) along and across the line of the next apex far enough from x; after the last, one as far on."""
         i = bisect.bisect_right(self._join_before, x) + 1
         if i < len(self.apexes):
             return self.apexes[i]

@@ -206,7 +206,7 @@ class Posture:
         )
 
     def step(self, command: Command, seen: Seen, dt: float) -> None:
-        """Move by a period (s), as far as joints and legs allow."""
+        """Move all joints over a period `dt` (s) by a command, as far as joints and legs allow."""
         self._step_aside(command, seen, dt)
         self._step_up(command, seen, dt)
         self._step_ankles(command, seen, dt)
@@ -292,7 +292,7 @@ class Posture:
         return least + self._edged() * max(0.0, damped - least)
 
     def _step_ahead(self, asked: float, dt: float) -> None:
-        """Within the range and the rate of the skier's fore and aft."""
+        """Shift fore and aft over `dt` (s) by an acceleration (m/s²), within the skier's range and speed."""
         place, rate = float(self.numbers[AHEAD]), float(self.rates[AHEAD])
         fastest, farthest = self.skier.greatest_shift_speed, self.skier.greatest_shift
         ahead, behind = (min(fastest, _stops_within(farthest - side * place)) for side in (1.0, -1.0))

@@ -73,7 +73,7 @@ class WedgeControl:
     _held_edges: tuple[float, float] | None = None
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """Command to the body for the next `dt` (s), so that the wedge keeps or brakes its speed."""
+        """Command to the body for the next `dt` (s), so that the wedge brakes to a stop."""
         if self._start_aside is None:
             self._start_aside = seen.place[1]
         if seen.speed < STOPPED or (self._held_edges is not None and seen.speed < 3.0 * STOPPED):
@@ -154,7 +154,7 @@ class WedgeControl:
         return open_ * max(-1.7 * force, min(1.7 * force, float(inputs[0]))), torque
 
     def _balance(self, seen: Seen, posture: Posture, toe: float, difference: float, dt: float) -> None:
-        """Capture point over a centre of pressure that may be shifted."""
+        """Update the balance sideways: capture point of the body, and centre of pressure that brings it back."""
         gravity, height = self.gravity.normal, self.body.height
         blade = max(0.0, min(1.0, 1.5 - seen.speed / 0.5))
         rate = 1.0 / math.sqrt(self.roll_inertia / (self.body.mass * gravity * height) + blade * height / gravity)

@@ -65,7 +65,7 @@ class Axis:
 
     @classmethod
     def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
-        """Axis of a range from a low to a high end; rejects equal or falling ends, or a logarithm of 0."""
+        """Axis of a range from a low to a high end; rejects equal or falling ends, and a logarithm of 0 or less."""
         if key.kind not in ("number", "whole number"):
             raise ParameterError("{name} has no range; write a list such as {name} = [...]").tag(
                 "no_data", name=key.name

@@ -66,7 +66,7 @@ class LayeredPoint(DeepeningPoint):
 
     @property
     def bends(self) -> tuple[float, ...]:
-        """See `PointLaw.bends`: the border of the layers."""
+        """Depth (m) above 0 at which the stress of first loading bends: the border of the layers."""
         return (self.layer_depth,)
 
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -133,7 +133,7 @@ class ProfilePoint(DeepeningPoint):
 
     @property
     def bends(self) -> tuple[float, ...]:
-        """See `PointLaw.bends`: the borders of the layers."""
+        """Depths (m) above 0 at which the stress of first loading bends: the borders of the layers."""
         return self.tops[1:]
 
     def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
