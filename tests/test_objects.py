@@ -181,7 +181,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_report_of_a_run_is_the_folder_of_the_command(folder: Path) -> None:
     names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     drawn = ("track", "motion", "along_ski", "grip", "energies")
-    figures = {f"figures/{name}.{form}" for name in drawn for form in ("png", "svg", "pdf")}
+    figures = {f"figures/{name}.{form}" for name in drawn for form in ("png", "svg", "pdf", "csv")}
     assert names == {"summary.json", "track.csv", "run.nc", "report.html", *figures}
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["outcome"] == "finished"

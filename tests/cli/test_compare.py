@@ -115,7 +115,7 @@ def test_out_writes_the_json_and_the_figure(straight: Path, tmp_path: Path, caps
     assert json.loads(text) == found
     assert text.startswith('{\n "')  # lines indented by one, as in every file of ours
     assert "Straße.csv" in text
-    assert {path.suffix for path in folder.glob("track_comparison.*")} == {".png", ".svg", ".pdf"}
+    assert {path.suffix for path in folder.glob("track_comparison.*")} == {".png", ".svg", ".pdf", ".csv"}
 
 
 @pytest.mark.usefixtures("undrawn")

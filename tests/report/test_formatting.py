@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.tables import campaign_tables
 from skisnow.report.formatting import figure_text, html, p_equals, prose, significant, whole
-from skisnow.report.sheet import CITED
+from skisnow.report.sheet import CITED, bibtex
 from skisnow.report.table import Column, Table, table_csv
 
 from .conftest import Reported
@@ -158,6 +158,18 @@ def test_program_and_papers_are_those_of_the_citation_file() -> None:
     assert "doi 10.1111/sms.12035" in CITED
     assert "doi: 10.1111/sms.12035" in CITATION
     assert "skisnow developers" in CITATION
+
+
+def test_bibtex_has_the_same_and_the_campaign_with_its_files() -> None:
+    text = bibtex({"name": "Slope & {a_b", "place": "", "observers": ["Ada", "Bo"], "files": {"shear.csv": "ab12"}})
+    for name in re.findall(r"family-names: ([^,]+),", CITATION):
+        assert name in text
+    assert "10.1111/sms.12035" in text
+    assert r"title = {Slope \& \textbraceleft{}a\_b}" in text
+    assert "{{Ada} and {Bo}}" in text
+    assert "SHA-256 ab12" in text
+    assert text.count("{") == text.count("}")
+    assert bibtex().count("@") == 3
 
 
 def test_symbols_of_a_template_are_set_and_values_escaped() -> None:

@@ -45,7 +45,7 @@ from .test_run_report import summary_of
 
 VERSION = f"skisnow {version('skisnow')}"
 TITLE = "Measurement of mechanical properties of snow for simulation of skiing"
-SAME = frozenset({"Code", "Journal of Glaciology", "Moment", f", {VERSION}", TITLE})
+SAME = frozenset({"BibTeX", "Code", "Journal of Glaciology", "Moment", f", {VERSION}", TITLE})
 """What is the same in both languages: words, and the title of a paper."""
 CODES = re.compile(
     r"[\w.]*_\w+|[\w-]+\.(?:csv|toml)|[0-9a-f]{64}|[ab]@\d+deg|H_.; .* linear|; .* linear|linear|[Rr]mse"
@@ -165,7 +165,9 @@ def test_no_word_in_german_figures_of_tracks_is_left_in_english() -> None:
 
 
 chain, found = test_turn_report.chain, test_identify_report.found  # fixtures
-KEYS = frozenset({*SCENARIO_KEYS, "giant-slalom", "false", "true", "Start", "Start (J)", VERSION, f", {VERSION}"})
+KEYS = frozenset(
+    {*SCENARIO_KEYS, "giant-slalom", "false", "true", "BibTeX", "Start", "Start (J)", VERSION, f", {VERSION}"}
+)
 NAMES = ("run A", "run B")
 CHOICES = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
 GAPS = tuple(

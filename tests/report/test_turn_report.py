@@ -292,7 +292,7 @@ def test_files_are_written_and_the_same_each_time(tmp_path: Path) -> None:
     assert written == tmp_path / "one" / "track.json"
     names = sorted(path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*"))
     assert {name.name for name in names if name.parent == Path()} == {"track.json", "turns.csv", "points.csv"}
-    assert len(names) == 15  # four figures in three forms, and three files
+    assert len(names) == 19  # four figures in four forms, and three files
     for name in ("track.json", "turns.csv", "points.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 

@@ -48,7 +48,9 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         metavar="FILE",
         help="gates, CSV or GPX: says which were passed, and when",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF) and track.json")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, data as CSV) and track.json"
+    )
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
     parser.set_defaults(run=summarise, parser=parser)
@@ -133,7 +135,7 @@ def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "--out",
         type=Path,
         metavar="DIR",
-        help="write compare.json, report.html and figures (PNG, SVG, PDF); of gates their table, too",
+        help="write compare.json, report.html and figures (PNG, SVG, PDF, CSV); of gates their table, too",
     )
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
@@ -256,4 +258,4 @@ def _write_comparison(
             pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path)
             write_file(stage.path / "report.html", comparison_page(answer, pictures, verdict=verdict, gaps=gaps))
         write_file(stage.path / "compare.json", f"{json_text(answer)}\n")
-    print(f"Figure: {options.out / 'track_comparison.png'}, and as SVG and PDF", file=sys.stderr)
+    print(f"Figure: {options.out / 'track_comparison.png'}, and as SVG, PDF and CSV", file=sys.stderr)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
@@ -61,6 +61,7 @@ def sheet(header: Header, sections: Sequence[Section]) -> str:
         sections=sections,
         version=version("skisnow"),
         cited=cited_text(),
+        bibtex=bibtex(),
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
     )
@@ -102,8 +103,61 @@ CITED: Final = (
     "doi 10.1111/sms.12035."
 )
 """Citations on a page: the program and the papers of its methods."""
+_BIBTEX: Final = """\
+@software{{skisnow,
+  author = {{{{The skisnow developers}}}},
+  title = {{skisnow}},
+  version = {{{version}}}
+}}
+@article{{moessner2013measurement,
+  author = {{Mössner, Martin and Innerhofer, Gerhard and Schindelwig, Kurt and Kaps, Peter and Schretter, Herwig and Nachbauer, Werner}},
+  title = {{Measurement of mechanical properties of snow for simulation of skiing}},
+  journal = {{Journal of Glaciology}},
+  year = {{2013}}
+}}
+@article{{moessner2013modeling,
+  author = {{Mössner, Martin and Heinrich, Dieter and Schindelwig, Kurt and Kaps, Peter and Schretter, Herwig and Nachbauer, Werner}},
+  title = {{Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic force-penetration relation}},
+  journal = {{Scandinavian Journal of Medicine \\& Science in Sports}},
+  year = {{2013}},
+  doi = {{10.1111/sms.12035}}
+}}
+"""  # noqa: E501
+_LATEX: Final = str.maketrans({
+    "\\": r"\textbackslash{}", "{": r"\textbraceleft{}", "}": r"\textbraceright{}", "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}",
+    "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
+})  # fmt: skip
+_CAMPAIGN: Final = """\
+@misc{{campaign,
+  author = {{{authors}}},
+  title = {{{title}}},
+  howpublished = {{Field campaign{place}}}{files}
+}}
+"""
 
 
 def cited_text() -> str:
     """Sentence in HTML that cites the program and its papers."""
     return CITED.format(version=version("skisnow"))
+
+
+def bibtex(campaign: Mapping[str, Any] | None = None) -> str:
+    """BibTeX of the program and its papers, and of a campaign with the SHA-256 of its files.
+
+    campaign: ``campaign`` of results.json.
+    """
+    own = _BIBTEX.format(version=version("skisnow"))
+    if campaign is None:
+        return own
+    observers = " and ".join(f"{{{_latex(name)}}}" for name in campaign["observers"]) or "{not stated}"
+    hashes = campaign.get("files", {})
+    listed = ", ".join(f"{_latex(name)} SHA-256 {digest}" for name, digest in hashes.items())
+    files = f",\n  note = {{{listed}}}" if listed else ""
+    place = f", {_latex(campaign['place'])}" if campaign["place"] else ""
+    return own + _CAMPAIGN.format(authors=observers, title=_latex(campaign["name"]), place=place, files=files)
+
+
+def _latex(text: str) -> str:
+    """LaTeX of a text from a user, on one line."""
+    return " ".join(text.split()).translate(_LATEX)

@@ -85,7 +85,7 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) 
     Raises OutputError: a file cannot be written.
     """
     pictures = write_pictures(gap_drawings(gaps, names), folder)
-    write_file(folder / GAPS_CSV, gaps_csv(gaps))
+    write_file(folder / GAPS_CSV, gaps_csv(gaps))  # the whole table, instead of the points that the figure shows
     return pictures
 
 
