@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.report.figures.style import journal_style
 from skisnow.report.track.figures import named_radii, switch_times, track_along, track_map
 from skisnow.report.track.report import write_track_report
-from skisnow.report.track.summary import track_text, track_verdict, turn_rows
+from skisnow.report.track.summary import track_gpx, track_text, track_verdict, turn_rows
 from skisnow.report.turn.chain import (
     EnsembleRun,
     TurnChain,
@@ -30,7 +31,10 @@ from skisnow.report.turn.sentences import best_measurement, contrast, key_senten
 from skisnow.scenario.identify_section import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties
+from skisnow.track.projection import GeodeticPoint
+from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, summary_dict, track_summary
+from skisnow.track.track import Track
 from tests.coded import raises
 
 from ..conftest import without_figures
@@ -324,6 +328,20 @@ def test_turn_table_of_a_circle_has_its_radius_speed_and_lean_of_balance() -> No
     assert (row["speed_in_m_per_s"], row["speed_out_m_per_s"]) == pytest.approx((8.0, 8.0), rel=0.02)
     assert row["lean_deg"] == pytest.approx(lean, rel=0.03)
     assert row["lean_low_deg"] <= row["lean_deg"] <= row["lean_high_deg"]
+
+
+def test_gpx_of_a_track_is_the_same_track(tmp_path: Path) -> None:
+    origin, time = GeodeticPoint(47.0, 11.0, 2000.0), np.arange(0.0, 20.0, 0.5)
+    place = np.column_stack([8.0 * time, 3.0 * np.sin(time), -2.0 * time])
+    start = datetime(2026, 2, 14, 9, 30, tzinfo=UTC)
+    made = Track(
+        "a", time, place, np.full(40, np.nan), "UTC", "local", axes="east_north_up", origin=origin, start=start
+    )
+    (tmp_path / "a.gpx").write_text(track_gpx(track_summary(made)) or "", encoding="utf-8")
+    again = read_track(tmp_path / "a.gpx", origin=origin)
+    assert np.abs(again.place - place).max() < 0.01
+    assert again.start == start
+    assert track_gpx(slalom()) is None
 
 
 @pytest.mark.parametrize(

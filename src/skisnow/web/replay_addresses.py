@@ -21,8 +21,8 @@ from .._support.user_files import ContentError, read_json, read_record
 from ..replay.page import MODULES, STYLE, in_language, page_words, replay_bytes, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
-from ..report.track.page import page_of_folders, page_of_track, page_of_tracks, turns_of_track
-from ..report.track.summary import TURNS_FILE
+from ..report.track.page import file_of_track, page_of_folders, page_of_track, page_of_tracks
+from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import Ski, read_ski
 from .elements import plain_page
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
@@ -35,6 +35,7 @@ LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
 GATES: Final = f"{LIST}/gates"
 TURNS: Final = f"{LIST}/turns"
+TRACK_FILES: Final = {TURNS_FILE: "text/csv", GPX_FILE: "application/gpx+xml"}  # media type of each file of a track
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 FIRST: Final = f"{LIST}/first"
@@ -132,15 +133,17 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
         work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
         return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
 
-    def turns_table(request: Request, track: str) -> Response:  # noqa: ARG001 -- of an error page
+    def track_file(request: Request, track: str, file: str) -> Response:  # noqa: ARG001 -- of an error page
+        if file not in TRACK_FILES:
+            return PlainTextResponse("", 404)
         path, placing = tracks.file(track)
-        text = confined(BOUNDS, turns_of_track, path, placing.called)
-        named = f"attachment; filename*=UTF-8''{quote(f'{track}-{TURNS_FILE}', safe='')}"
-        return Response(text, media_type="text/csv", headers={"content-disposition": named})
+        text = confined(BOUNDS, file_of_track, path, placing.called, file)
+        named = f"attachment; filename*=UTF-8''{quote(f'{track}-{file}', safe='')}"
+        return Response(text, media_type=TRACK_FILES[file], headers={"content-disposition": named})
 
     _add_route(app, GATES, gates, is_page=True)
     _add_route(app, TURNS, turns, is_page=True)
-    _add_route(app, f"{TURNS}/{TURNS_FILE}", turns_table, is_page=True)
+    _add_route(app, f"{TURNS}/{{file}}", track_file, is_page=True)
 
 
 def _add_route(app: FastAPI, place: str, answer: Callable[..., Response], *, is_page: bool = False) -> None:

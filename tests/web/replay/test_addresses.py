@@ -15,6 +15,7 @@ from skisnow._support.errors import SkisnowError
 from skisnow._support.messages import translated
 from skisnow.replay import replay_of_run
 from skisnow.track.path_estimate import estimate_path
+from skisnow.track.read import read_track
 from skisnow.web.lab_tracks import Placing, TrackFolders
 from tests.coded import raises
 
@@ -186,7 +187,7 @@ def test_a_kept_track_has_a_page_of_turns_in_both_languages(tmp_path: Path, monk
     table = client.get(f"/replay/turns/turns.csv?track={name}")
     assert [row["side"] for row in DictReader(io.StringIO(table.text))] == ["left", "right"]
     assert table.headers["content-disposition"].endswith(f"{name}-turns.csv")
-    assert client.get(f"/replay/turns/track.gpx?track={name}").status_code == 404
+    assert client.get(f"/replay/turns/track.gpx?track={name}").status_code == 404  # in the axes of a slope
     both = client.get(f"{page}&other={name}", language="de")
     assert both.status_code == 200 and both.text.count("<img ") == 1 and both.text.count('id="table-turns_') == 2
     assert "from above" not in both.text
@@ -194,3 +195,15 @@ def test_a_kept_track_has_a_page_of_turns_in_both_languages(tmp_path: Path, monk
     found = [client.get(f"/replay/turns{file}?track=nothing").status_code for file in ("", "/turns.csv")]
     assert found == [404, 404]
     assert client.get(f"/replay/turns/about.json?track={name}").status_code == 404
+
+
+def test_a_kept_track_of_a_receiver_is_a_gpx_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    places = [(8.0 * k, 0.0) for k in range(30)]
+    name = TrackFolders(tmp_path).keep(io.BytesIO(gpx(places)), Placing("x.gpx"))
+    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
+    app = FastAPI()
+    add_addresses(app, RunFolders(tmp_path))
+    answer = Client(app).get(f"/replay/turns/track.gpx?track={name}")
+    assert answer.status_code == 200
+    (tmp_path / "again.gpx").write_text(answer.text, encoding="utf-8")
+    assert len(read_track(tmp_path / "again.gpx").time) == 30

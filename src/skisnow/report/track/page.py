@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language, outcome_words
 from ...comparison import compare_tracks, comparison_dict
 from ...track.course.gates_table import GateGap, read_gate_gaps
@@ -22,7 +23,7 @@ from ..sheet import Header, Section, sheet
 from ..summaries import read_compared, time_verdict
 from ..table import Column, Table, record_table
 from .report import comparison_drawing, track_drawings
-from .summary import TITLES, track_verdict, turn_rows, turns_csv
+from .summary import GPX_FILE, TITLES, TURNS_FILE, track_gpx, track_verdict, turn_rows, turns_csv
 
 _COLUMNS: Final = (
     Column("turn", Message("Turn"), "count"),
@@ -75,9 +76,15 @@ def page_of_track(path: Path, name: str, language: str = ENGLISH, *, back: str =
         return sheet(Header(Message("Measured track"), name, [], headline=count, back=back), sections)
 
 
-def turns_of_track(path: Path, name: str) -> str:
-    """Text of turns.csv of a track; errors as in `page_of_track`."""
-    return turns_csv(track_summary(replace(read_track(path), name=name)))
+def file_of_track(path: Path, name: str, file: str) -> str:
+    """Text of turns.csv or track.gpx of a track; errors as in `page_of_track`, and without latitude and longitude."""
+    summary = track_summary(replace(read_track(path), name=name))
+    text = {TURNS_FILE: turns_csv, GPX_FILE: track_gpx}[file](summary)
+    if text is None:
+        raise ParameterError("{track} has no latitude and longitude, which GPX requires. Use its CSV").tag(
+            "no_origin", track=name
+        )
+    return text
 
 
 def comparison_page(

@@ -37,7 +37,7 @@ from ..figures.style import (
 from ..formatting import figure_text, json_text, prose, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from .figures import LABELS, coloured_map, drawn_points, track_along, track_map
-from .summary import POINTS_FILE, TITLES, TURNS_FILE, points_csv, turns_csv
+from .summary import GPX_FILE, POINTS_FILE, TITLES, TURNS_FILE, points_csv, track_gpx, turns_csv
 
 FIGURES: Final = ("map", "speed", "radius", "along", "course")
 """Names of a track's figures, in figures/ as .png and .svg; the last one only with gates."""
@@ -52,7 +52,7 @@ def write_track_report(
     language: str = ENGLISH,
     progress: Progress = silent,
 ) -> Path:
-    """Write figures, track.json, turns.csv and points.csv of a track.
+    """Write figures, track.json, turns.csv, points.csv, and track.gpx of a track with latitude and longitude.
 
     summary: result of `skisnow.track.summary.track_summary`.
     folder: output folder, created if necessary; other files in it stay.
@@ -67,9 +67,11 @@ def write_track_report(
     require_writable(folder)
     text = json_text(summary_dict(summary) if values is None else values)
     with staged(folder, last="track.json") as stage:
-        stage.stale += [*picture_files(FIGURES), "gates.csv"]
-        write_file(stage.path / TURNS_FILE, turns_csv(summary))
-        write_file(stage.path / POINTS_FILE, points_csv(summary))
+        stage.stale += [*picture_files(FIGURES), "gates.csv", GPX_FILE]
+        tables = {TURNS_FILE: turns_csv(summary), POINTS_FILE: points_csv(summary), GPX_FILE: track_gpx(summary)}
+        for name, content in tables.items():
+            if content is not None:
+                write_file(stage.path / name, content)
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
         with in_language(language):

@@ -1,13 +1,14 @@
-"""Measured tracks as text for a terminal and as CSV; comparisons of two tracks as text."""
+"""Measured tracks as text for a terminal, CSV and GPX; comparisons of two tracks as text."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from datetime import datetime
+from datetime import datetime, timedelta
 from itertools import chain
 from textwrap import fill
 from typing import Any, Final
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -261,6 +262,7 @@ def _fitted_lines(comparison: Mapping[str, Any]) -> Iterator[str]:
 GRAVITY: Final = 9.81
 TURNS_FILE: Final = "turns.csv"
 POINTS_FILE: Final = "points.csv"
+GPX_FILE: Final = "track.gpx"
 TURN_COLUMNS: Final = (
     "turn", "side", "start_s", "duration_s", "length_m", "minimum_radius_m", "radius_low_m", "radius_high_m",
     "speed_in_m_per_s", "speed_out_m_per_s", "speed_ratio", "lean_deg", "lean_low_deg", "lean_high_deg", "best",
@@ -323,6 +325,28 @@ def _point_cell(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.9g}" if np.isfinite(value) else ""
     return protect_from_formulas(str(value))
+
+
+def track_gpx(summary: TrackSummary) -> str | None:
+    """GPX 1.1 with a segment for each stretch without a gap; None for a track without latitude and longitude."""
+    degrees, track = _degrees(summary), summary.track
+    if degrees is None:
+        return None
+    segments: dict[int, list[str]] = {}
+    for number in np.flatnonzero(track.usable & np.isfinite(degrees[:, :2]).all(axis=1)).tolist():
+        latitude, longitude, height = degrees[number]
+        elevation = f"<ele>{height:.3f}</ele>" if np.isfinite(height) else ""
+        time = ""
+        if track.start is not None:
+            moment = track.start + timedelta(seconds=float(track.time[number] - track.time[0]))
+            time = f"<time>{moment.isoformat().replace('+00:00', 'Z')}</time>"
+        point = f'<trkpt lat="{latitude:.8f}" lon="{longitude:.8f}">{elevation}{time}</trkpt>'
+        segments.setdefault(int(summary.motion.smoothed.part[number]), []).append(point)
+    inside = "\n".join(f"<trkseg>\n{chr(10).join(points)}\n</trkseg>" for points in segments.values())
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="skisnow" '
+        f'xmlns="http://www.topografix.com/GPX/1/1">\n<trk><name>{escape(track.name)}</name>\n{inside}\n</trk>\n</gpx>\n'
+    )
 
 
 def _degrees(summary: TrackSummary) -> Any:

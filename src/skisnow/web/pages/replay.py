@@ -12,7 +12,7 @@ from ..._support.errors import SkisnowError
 from ..._support.messages import Message
 from ..._support.user_files import ContentError, read_record
 from ...report.formatting import counted
-from ...report.track.summary import TURNS_FILE
+from ...report.track.summary import GPX_FILE, TURNS_FILE
 from ..elements import Outcome, Words, button, error_sentence, folded, heading, link, named, page_frame, sentence
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
 from ..page_requests import address, file_input, submit_button, text_input, upload_form
@@ -64,12 +64,15 @@ def add_page(lab: Lab) -> None:
             if placings:
                 heading(Message("Measured tracks"), 2)
                 _two_tracks_form(list(placings))
-            for name in placings:
+            for name, placing in placings.items():
+                files = {TURNS_FILE: Message("Turns as CSV")}
+                if placing.is_geodetic:
+                    files[GPX_FILE] = Message("Track as GPX")
                 with ui.element("div").classes("acts"):
                     link(Message("Turns of {name}", name=name), address(TURNS, track=name))
-                    words = Message("Turns as CSV")
-                    table = link(words, address(f"{TURNS}/{TURNS_FILE}", track=name))
-                    named(table, Message("{words}: {name}", words=words, name=name))
+                    for file, words in files.items():
+                        table = link(words, address(f"{TURNS}/{file}", track=name))
+                        named(table, Message("{words}: {name}", words=words, name=name))
                     _removal(tracks, name)
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))

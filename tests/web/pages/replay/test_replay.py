@@ -113,7 +113,11 @@ def test_a_track_without_direction_has_turns_and_no_run_next_to_it(desk: Desk, r
     page = desk.open(f"/replay?track={without}")
     assert {name for name, _, _ in options(page, "track")} == {"", own, placed}
     files = [str(each.props["href"]) for each in page.of() if "/replay/turns" in str(each.props.get("href"))]
-    assert sum(f"/{without}/" in each or each.endswith(f"={without}") for each in files) == 2
+    assert [name for name in (own, without, placed) if any("track.gpx" in f and name in f for f in files)] == [
+        without,
+        placed,
+    ]
+    assert sum(f"/{without}/" in each or each.endswith(f"={without}") for each in files) == 3
 
 
 @pytest.mark.parametrize(
