@@ -1,4 +1,4 @@
-"""Series in neighbouring columns and headings on two rows are not imported without an answer."""
+"""Import of series in neighbouring columns, and of headings on two rows."""
 
 from typing import Any
 
@@ -7,20 +7,37 @@ from openpyxl import Workbook
 
 from skisnow.campaign.importing.answers import Answers
 from skisnow.campaign.importing.proposal import propose
+from skisnow.campaign.reading.campaign import campaign_of_files
+from skisnow.estimation.result_rows import experiment_hardness
 
-from .test_import import FILE, bytes_of
+from .test_import import FILE, G, bytes_of, hardness
 
 PAIR = ["Last [kg]", "Tiefe [mm]"]
 PAIRS: list[list[Any]] = [PAIR * 2, [10, 0.63, 10, 0.72], [50, 1.41, 50, 1.59]]
 ROWS = [["1", 30, 10, 0.63], ["1", 30, 50, 1.41], ["2", 45, 10, 0.72], ["2", 45, 50, 1.59]]
+RIGHT = [
+    # series in neighbouring columns
+    ([["Hang oben"], ["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel: 45 °"], *PAIRS], {}),
+    ([["Versuch 1, Kantwinkel 30°", None, "Versuch 2, Kantwinkel 45°"], *PAIRS], {}),
+    ([["Versuch", 1, None, 2], ["Kantwinkel [°]", 30.0, None, 45.0], [None, *PAIR * 2],
+        [None, *PAIRS[1]], [None, *PAIRS[2]]], {}),
+    ([["Hang oben"], [1, None, 2], [30, None, 45], *PAIRS], {
+        "column": {"Hang oben:2": "experiment", "Hang oben:3": "edge_angle_deg"}, "unit": {"Hang oben:3": "°"}}),
+    ([["Versuch", 1, 2], ["Kantwinkel [°]", 30, 45], ["Last [kg]", "Tiefe [mm]", "Tiefe [mm]"], [10, 0.63, 0.72],
+        [50, 1.41, 1.59]], {}),
+    ([["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel 45°"], [*PAIR, "Last [N]", "Tiefe [cm]"],
+        [10, 0.63, 10 * G, 0.072], [50, 1.41, 50 * G, 0.159]], {}),
+    ([["Versuch", "Kantwinkel [°]", *PAIR] * 2, [1, 30, 10, 0.63, 2, 45, 10, 0.72], [1, 30, 50, 1.41, 2, 45, 50, 1.59]],
+        {}),
+    # headings on two rows
+    ([["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel [°]", "[kg]", "tiefe [mm]"], *ROWS], {}),
+    ([["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel", None, "tiefe"], [None, "°", "kg", "mm"], *ROWS], {}),
+    ([["Test", "Edge", "Load", "Penetration"], ["no.", "angle [°]", "[kg]", "depth [mm]"], *ROWS], {}),
+    ([[None, None, "Last"], ["Versuch", "Kantwinkel [°]", "[kg]", "Tiefe [mm]"], *ROWS], {}),
+    ([["Versuch", "Kantwinkel", "Last", "Tiefe"], [None, None, "in kg", "in mm"], *ROWS],
+        {"unit": {"Kantwinkel": "°"}}),
+]  # fmt: skip
 ASKED = [
-    [["Versuch", 1, None, 2], ["Kantwinkel [°]", 30.0, None, 45.0], [None, *PAIR * 2],
-        [None, *PAIRS[1]], [None, *PAIRS[2]]],
-    [["Versuch", 1, 2], ["Kantwinkel [°]", 30, 45], ["Last [kg]", "Tiefe [mm]", "Tiefe [mm]"], [10, 0.63, 0.72],
-        [50, 1.41, 1.59]],
-    [["Versuch", "Kantwinkel [°]", *PAIR] * 2, [1, 30, 10, 0.63, 2, 45, 10, 0.72], [1, 30, 50, 1.41, 2, 45, 50, 1.59]],
-    [["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel [°]", "[kg]", "tiefe [mm]"], *ROWS],
-    [["Test", "Edge", "Load", "Penetration"], ["no.", "angle [°]", "[kg]", "depth [mm]"], *ROWS],
     [["Hang oben"], *PAIRS],
     [["Hang oben"], ["A", None, "B"], [30, None, 45], *PAIRS],
     [["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°"], *PAIRS],
@@ -44,6 +61,17 @@ def _book(rows: list[list[Any]]) -> bytes:
         sheet.append(row)
     book.create_sheet("Notizen").append(["Skistück 200 x 62 mm"])
     return bytes_of(book)
+
+
+@pytest.mark.parametrize(("rows", "answers"), RIGHT)
+def test_series_side_by_side_under_two_heading_rows(rows: list[list[Any]], answers: dict[str, dict[str, str]]) -> None:
+    proposal = propose(FILE, _book(rows), Answers(**{"site": {"Hang oben": "Hang oben"}, **answers}))
+    assert not proposal.problems, [str(problem) for problem in proposal.problems]
+    campaign = campaign_of_files(proposal.files)
+    assert campaign.penetration is not None
+    assert campaign.penetration.load.tolist() == pytest.approx([10 * G, 50 * G] * 2)
+    expected = [hardness(50, 1.41, 30), hardness(50, 1.59, 45)]
+    assert (experiment_hardness(campaign) / 1e9).tolist() == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("rows", ASKED)

@@ -62,7 +62,7 @@ def stored_rows(
     """Convert the rows of a section that have a required number; questions and errors are added to the dialogue."""
     sheet, numbers = section.sheet, number_columns(form)
     needed = {column.name for column in form.numbers if column.needed}
-    places = [choice.place for choice in choices if choice.column in needed and choice.place in section.span]
+    places = [choice.place for choice in choices if choice.column in needed and choice.place in section.own]
     rows = [
         row
         for row in range(section.start, section.end)
@@ -200,8 +200,8 @@ def _refuse_strays(section: Section, rows: Sequence[int], dialogue: Dialogue) ->
     """Add errors for cells to the right of a table that have no heading: a separator may have split a number."""
     sheet = section.sheet
     for row in rows:
-        right = section.span.stop
-        while text := sheet.cell(row, right):
+        right = section.own.stop
+        while section.is_last and (text := sheet.cell(row, right)):
             if not sheet.ignores(row, right):
                 place = f"{sheet.name}!{column_letters(right)}"
                 action = Message("Add a heading, or exclude the column with --ignore {place}.", place=place)
