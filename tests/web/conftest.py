@@ -39,7 +39,7 @@ DRAWS_IF_ASKED = """["drawArrays", "drawArraysInstanced", "drawElements", "drawE
   WebGL2RenderingContext.prototype[name] = function (...given) { if (window.draws) draw.apply(this, given); };
 })"""
 """Drawing replays in software takes most of the time of these tests, and most of them look at no picture."""
-LOADED_LATE = ("nicegui.ui_run_with", "sqlalchemy.dialects.sqlite", "uvicorn.lifespan.on",
+LOADED_LATE = ("alembic.command", "nicegui.ui_run_with", "sqlalchemy.dialects.sqlite", "uvicorn.lifespan.on",
                "uvicorn.loops.uvloop", "uvicorn.protocols.websockets.auto")  # fmt: skip
 """Modules that every server would load when it starts."""
 

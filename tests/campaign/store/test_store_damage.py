@@ -117,6 +117,14 @@ def test_nothing_is_exported_under_a_damaged_name(statement: str, folder: Path, 
     assert not (tmp_path / "out").exists()
 
 
+def test_a_store_of_two_versions_is_damaged(folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+    change(place, "INSERT INTO alembic_version VALUES ('0001')")
+    with raises(StoreError, "damaged"):
+        Store.open(place)
+
+
 def test_a_schema_whose_names_are_no_text_is_damaged(folder: Path, place: Path) -> None:
     with Store.open(place) as store:
         store.add(folder)

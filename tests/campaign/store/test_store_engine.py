@@ -127,6 +127,8 @@ def test_another_programs_database_is_left_alone(tmp_path: Path) -> None:
     other = tmp_path / "other.sqlite3"
     connection = sqlite3.connect(other)
     connection.execute("CREATE TABLE campaign (id)")
+    connection.execute("CREATE TABLE alembic_version (version_num)")
+    connection.execute("INSERT INTO alembic_version VALUES ('0001')")
     connection.commit()
     connection.close()
     before = other.read_bytes()
@@ -274,12 +276,19 @@ def campaigns(folder: Path, names: list[str]) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("state", ["absent", pytest.param("empty file", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "state", ["absent", *(pytest.param(each, marks=pytest.mark.slow) for each in ("old schema", "empty file"))]
+)
 def test_two_processes_lose_nothing(state: str, place: Path, tmp_path: Path) -> None:
-    """They race to make the store, then each adds its own campaigns and two that both have."""
+    """They race to make or migrate the store, then each adds its own campaigns and two that both have."""
     if state != "absent":
         place.parent.mkdir()
         place.touch()
+    if state == "old schema":
+        from skisnow.campaign.store.migrations import downgrade
+
+        with Store.open(place) as store, writing(store.engine) as connection:
+            downgrade(connection, "base")
     own = [[f"{who} {number}" for number in range(3)] for who in ("first", "second")]
     folders = [campaigns(tmp_path / names[0], [*names, "both a", "both b"]) for names in own]
     run_at_once(place, folders, tmp_path / "go")

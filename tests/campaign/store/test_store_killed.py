@@ -26,7 +26,7 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="the trials are 
 FORKING = """
 import os, sys
 from pathlib import Path
-import skisnow.campaign.reading.campaign
+import skisnow.campaign.store.migrations, skisnow.campaign.reading.campaign
 from skisnow.campaign.store import Store, sync
 
 def adding(place, folder, diary):

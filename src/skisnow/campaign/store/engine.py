@@ -112,7 +112,7 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 
 def open_engine(place: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Connect to the database, and create the tables of a new one.
+    """Connect to the database and bring its schema up to date.
 
     Raises StoreError: it is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
@@ -127,10 +127,10 @@ def open_engine(place: Path, *, create: bool, busy_timeout_s: float) -> Engine:
 
 
 def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Engine of a store's file, with tables if it is new; read-only folders are allowed; rejects another schema."""
+    """Engine of a store's file, brought up to date; read-only folders are allowed; rejects another schema."""
     engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
     try:
-        revision = _revision(engine, path)
+        is_outdated = _is_outdated(engine, path)
     except DBAPIError as error:
         # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
         # is writing, and SQLite can read the file as immutable.
@@ -139,14 +139,9 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
             raise
         engine = _engine(path, "ro&immutable=1", busy_timeout_s)
-        revision = _revision(engine, path)
-    if revision is None:
-        _create_tables(engine, busy_timeout_s)
-    elif revision != REVISION:
-        raise StoreError(
-            "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
-            "skisnow, or name another store."
-        ).tag("unknown_schema", place=path, revision=revision, known=REVISION)
+        is_outdated = _is_outdated(engine, path)
+    if is_outdated:
+        _bring_up_to_date(engine, path, busy_timeout_s)
     _require_tables(engine, path)
     return engine
 
@@ -188,31 +183,61 @@ def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
     return engine
 
 
-def _revision(engine: Engine, path: Path) -> int | None:
-    """Revision of the schema of the store; None for a file without tables."""
+def _revision(connection: Connection, path: Path) -> str | None:
+    """Revision of the store; None for a file without tables."""
+    tables = set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
+    if not tables - {"alembic_version"}:
+        return None
+    if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
+        raise StoreError("{path} is an SQLite database of another program, not a store; name another file.").tag(
+            "other_database", path=path
+        )
+    versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
+    if len(versions) != 1 or not isinstance(versions[0], str):
+        raise StoreError("{path} is damaged: its version is missing. Restore a backup.").tag("damaged", path=path)
+    return versions[0]
+
+
+def _is_outdated(engine: Engine, path: Path) -> bool:
+    """True if the store needs a migration; StoreError as `_needs_migration`."""
     with reading(engine) as connection:
-        if _is_empty(connection):
-            return None
-        if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
-            raise StoreError("{path} is an SQLite database of another program, not a store; name another file.").tag(
-                "other_database", path=path
-            )
-        return int(connection.exec_driver_sql("PRAGMA user_version").scalar_one())
+        return _needs_migration(_revision(connection, path), path)
 
 
-def _is_empty(connection: Connection) -> bool:
-    """True if the database has no tables."""
-    return not connection.exec_driver_sql("SELECT count(*) FROM sqlite_master WHERE type = 'table'").scalar_one()
+def _needs_migration(revision: str | None, path: Path) -> bool:
+    """True if a store with that revision needs a migration.
+
+    Raises StoreError: this program does not know the migration.
+    """
+    if revision == REVISION:
+        return False  # the usual case: alembic need not even be imported
+    from .migrations import is_known
+
+    if revision is not None and not is_known(revision):
+        raise StoreError(
+            "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
+            "skisnow, or name another store."
+        ).tag("unknown_schema", place=path, revision=revision, known=REVISION)
+    return True
 
 
-def _create_tables(engine: Engine, busy_timeout_s: float) -> None:
-    """Create the tables and write the schema's revision, unless another process already did."""
+def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
+    """Create the tables of an empty store, or run the missing migrations, in one transaction."""
+    from .migrations import upgrade
+
     _use_write_ahead_log(engine, busy_timeout_s)
-    with writing(engine) as connection:
-        if _is_empty(connection):  # otherwise another process was faster
-            metadata.create_all(connection)
-            connection.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
-            connection.exec_driver_sql(f"PRAGMA user_version = {REVISION}")
+    with engine.connect() as connection:
+        # Some migrations rebuild tables, which foreign keys would prevent. They can only be switched off outside of a
+        # transaction, and are checked before its end.
+        connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
+        with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+            if not _needs_migration(_revision(connection, path), path):
+                return  # another process was faster
+            upgrade(connection)
+            if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
+                raise StoreError(
+                    "{path} contains rows with invalid references; it was not changed. Restore a backup."
+                ).tag("damaged", path=path)
 
 
 def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:

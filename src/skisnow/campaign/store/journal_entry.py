@@ -99,7 +99,7 @@ def readable_entry(row: RowMapping) -> JournalEntry:
 _SUMMED_COLUMNS: Final = (
     "sequence", "journal_id", "at", "who", "action", "file", "test", "position", "about", "why", "once", "uid",
 )  # fmt: skip
-"""Columns other than the cells, in the order of the checksum; additions need a new revision."""
+"""Columns other than the cells, in the order of the checksum; additions need a migration."""
 
 
 def entry_sha256(row: Mapping[str, object]) -> str:

@@ -3,7 +3,7 @@
 A campaign is a list of paths, each with a content. A content is a SHA-256 and its bytes in chunks, so that a file of
 any size needs the memory of one chunk. Campaigns that share a file share its content.
 
-A change of these tables needs a new ``REVISION``, and from the first release on a migration of older stores.
+A change of these tables needs a migration of the stores that exist and a new ``REVISION``.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from sqlalchemy import (
     Text,
 )
 
-REVISION: Final = 5
-"""Revision of the tables, in the header of the file (``user_version``)."""
+REVISION: Final = "0005"
+"""Newest migration; tests compare it with the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
 """Number in the file's header ("SkiS") that tells a store from other people's SQLite files."""

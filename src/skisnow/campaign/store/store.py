@@ -82,7 +82,7 @@ class Store(Shown):
 
     @classmethod
     def open(cls, path: Path | str | None = None, *, create: bool = True, busy_timeout_s: float = 30.0) -> Self:
-        """Open a store.
+        """Open a store, and migrate it to the current schema.
 
         path: SQLite file (default: `default_path`).
         create: True to create a missing file with its folders.

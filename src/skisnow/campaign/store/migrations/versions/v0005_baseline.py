@@ -1,0 +1,24 @@
+"""Baseline: stores with this revision have the tables that ``schema`` had when the first migration was written.
+
+An empty store gets the current tables at once (`upgrade` of this package), so the baseline itself creates none.
+"""
+
+from __future__ import annotations
+
+from alembic import op
+
+from skisnow.campaign.store.schema import metadata
+
+revision = "0005"
+down_revision = None
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    pass
+
+
+def downgrade() -> None:
+    metadata.drop_all(op.get_bind())
+    op.execute("PRAGMA application_id = 0")
