@@ -102,7 +102,7 @@ def test_what_builds_and_runs_is_what_is_tested(name: str, python: str) -> None:
 
 def test_every_dependency_and_every_bound_is_explained() -> None:
     page = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8").lower()
-    for each in [*asked(*TESTED, "posterior", "peers", "geotiff"), *of_group("dev")]:
+    for each in [*asked(*TESTED, "posterior", "peers", "geotiff", "postgresql"), *of_group("dev")]:
         assert bare(each.name) in page.replace("_", "-"), each
         for bound in each.specifier:
             if bound.operator == "<":

@@ -102,7 +102,11 @@ def add_serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         help="PEM file with a certificate and its private key: pages and token are then encrypted on their way",
     )
     parser.add_argument("--certificate-key", type=Path, metavar="FILE", help="PEM file of the key, where it is another")
-    parser.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own file)")
+    parser.add_argument(
+        "--store",
+        metavar="PATH",
+        help="file of the store, or postgresql://USER@HOST/DATABASE (default: the user's own file)",
+    )
     parser.set_defaults(run=serve_lab)
 
 
@@ -116,17 +120,18 @@ def serve_lab(options: argparse.Namespace) -> int:
         text = f"skisnow: the web lab needs {missing.name}; install it with: pip install 'skisnow[web]'"
         print(text, file=sys.stderr)
         return 1
-    from ..campaign.store import Store, default_path
+    from ..campaign.store import ServerAddress, Store, default_path, store_place
     from ..web.settings import Lab
 
     require_allowed(options.host, options.token)
     if options.certificate is None and options.certificate_key is not None:
         raise ParameterError("--certificate-key goes with --certificate").tag("contradiction")
     certificate = None if options.certificate is None else Certificate(options.certificate, options.certificate_key)
-    place = options.store.absolute() if options.store is not None else default_path()
+    place = store_place(options.store) if options.store is not None else default_path()
+    beside = default_path() if isinstance(place, ServerAddress) else place  # runs stay here
     with Store.open(place) as store:
         serve(
-            Lab(store, place.parent / "lab"),
+            Lab(store, beside.parent / "lab"),
             host=options.host,
             port=options.port,
             token=options.token,

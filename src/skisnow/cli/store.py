@@ -16,7 +16,7 @@ from .output import Progress
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ..campaign.store import JournalHead, Side, Store, StoredCampaign
+    from ..campaign.store import JournalHead, Side, Store, StoredCampaign, StorePlace
 
 Json: TypeAlias = dict[str, object]
 Answer: TypeAlias = tuple[Json, str, int]
@@ -26,8 +26,10 @@ Answer: TypeAlias = tuple[Json, str, int]
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add ``store`` and its actions to the command line."""
     every = argparse.ArgumentParser(add_help=False)
-    about = "file of the store (default: the user's own file)"
-    place: dict[str, Any] = {"type": Path, "metavar": "PATH", "help": about}
+    place: dict[str, Any] = {
+        "metavar": "PATH",
+        "help": "file of the store, or postgresql://USER@HOST/DATABASE (default: the user's own file)",
+    }
     alone: dict[str, Any] = {"action": "store_true", "help": "print JSON alone to standard output"}
     every.add_argument("--store", default=argparse.SUPPRESS, **place)  # an option before the action stays
     every.add_argument("--json", default=argparse.SUPPRESS, **alone)
@@ -61,7 +63,11 @@ def _add_sync(add_parser: Callable[..., argparse.ArgumentParser], every: argpars
         parents=[every],
         help="bring this store and the group's what each lacks; exit code 1 if conflicts are open",
     )
-    syncing.add_argument("group", type=Path, metavar="PATH", help="the group's store: a file that all can reach")
+    syncing.add_argument(
+        "group",
+        metavar="URL",
+        help="the group's store: postgresql://USER@HOST/DATABASE, or a file that is carried about",
+    )
     syncing.add_argument(
         "--keep",
         action="append",
@@ -166,11 +172,7 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
     """Synchronise with the group's store; JSON, text and exit status, which is 1 with open conflicts or problems."""
     from ..campaign.store import Store, sync
 
-    if not args.group.absolute().parent.is_dir():  # a missing file is created only in an existing folder
-        raise StoreError("{parent} is not there; is the disk or stick with the group's store plugged in?").tag(
-            "wrong_kind", parent=args.group.absolute().parent
-        )
-    with Store.open(args.group) as group, _percent_printed("synchronising") as progress:
+    with Store.open(_group_place(args.group)) as group, _percent_printed("synchronising") as progress:
         done = sync(store, group, keep=dict(args.keep), who=args.who, progress=progress)
     lines = [
         f"given: {_counts_text(done.n_campaigns_given, done.n_entries_given)}; "
@@ -182,6 +184,18 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
         choices = " or ".join(f"--keep {conflict.id}={side}" for side in conflict.choices)
         lines += ["", f"not carried over: {conflict}", f"    choose with {choices}"]
     return asdict(done), "\n".join(lines), 1 if done.conflicts or done.problems else 0
+
+
+def _group_place(word: str) -> StorePlace:
+    """Place of the group's store from an option; an error for a file in a folder that does not exist."""
+    from ..campaign.store import store_place
+
+    place = store_place(word)
+    if isinstance(place, Path) and not place.parent.is_dir():
+        raise StoreError("{parent} is not there; is the disk or stick with the group's store plugged in?").tag(
+            "wrong_kind", parent=place.parent
+        )
+    return place
 
 
 def _parse_choice(text: str) -> tuple[str, Side]:

@@ -33,6 +33,7 @@ from ..campaign.reading.campaign_files import CampaignFiles
 from ..campaign.reading.workbook_files import unfold_workbooks
 from ..campaign.store import Store
 from ..campaign.store.folder import unsafe_because
+from ..campaign.store.server import StorePlace
 from .settings import Limits
 
 CHUNK_BYTES: Final = 1 << 18
@@ -191,7 +192,7 @@ UNDESCRIBED: Final = Message(
 )
 
 
-def add_uploaded(store: Path, place: str, names: Sequence[str], limits: Limits) -> str:
+def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
     """Store a campaign of uploaded files, which are numbered in a folder; returns its id.
 
     Raises ParameterError: a file is rejected, or the files do not contain a campaign.

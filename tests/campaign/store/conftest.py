@@ -1,4 +1,4 @@
-"""Empty stores."""
+"""Stores in a file and on a server."""
 
 import shutil
 import sqlite3
@@ -9,6 +9,17 @@ from pathlib import Path
 import pytest
 
 from skisnow.campaign.store import Store
+
+from .postgresql_server import Server, started, why_there_is_none
+
+
+@pytest.fixture(scope="session")
+def server() -> Iterator[Server]:
+    """A PostgreSQL server, started once."""
+    if (why := why_there_is_none()) is not None:
+        pytest.skip(why)
+    with started() as running:
+        yield running
 
 
 @pytest.fixture(scope="session")
@@ -33,15 +44,23 @@ def place(tmp_path: Path) -> Path:
     return tmp_path / "deep" / "store.sqlite3"
 
 
-@pytest.fixture
-def store(empty_file: Path, tmp_path: Path) -> Iterator[Store]:
-    """An empty store."""
-    with opened(shutil.copy(empty_file, tmp_path / "store.sqlite3")) as store:
+@pytest.fixture(params=["file", "server"])
+def store(request: pytest.FixtureRequest, empty_file: Path, tmp_path: Path) -> Iterator[Store]:
+    """An empty store, in a file or on the server."""
+    if request.param == "file":
+        with opened(shutil.copy(empty_file, tmp_path / "store.sqlite3")) as store:
+            yield store
+        return
+    with Store.open(request.getfixturevalue("server").emptied()) as store:
         yield store
 
 
 @pytest.fixture
-def group(empty_file: Path, tmp_path: Path) -> Iterator[Store]:
-    """An empty store of a group."""
-    with Store.open(shutil.copy(empty_file, tmp_path / "group.sqlite3")) as store:
+def group(request: pytest.FixtureRequest, empty_file: Path, tmp_path: Path) -> Iterator[Store]:
+    """An empty store on the server; in a file without a server."""
+    if why_there_is_none() is None:
+        place = request.getfixturevalue("server").emptied()
+    else:
+        place = shutil.copy(empty_file, tmp_path / "group.sqlite3")
+    with Store.open(place) as store:
         yield store

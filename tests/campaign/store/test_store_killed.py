@@ -9,6 +9,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import IO
 
@@ -18,6 +19,7 @@ from tests.present import present
 
 from skisnow.campaign.store import Journals, Store, sync
 
+from .postgresql_server import Server
 from .test_journal import TOML, reading
 from .test_store import write
 
@@ -29,6 +31,10 @@ from pathlib import Path
 import skisnow.campaign.store.migrations, skisnow.campaign.reading.campaign
 from skisnow.campaign.store import Store, sync
 
+try:
+    import psycopg
+except ImportError:
+    pass
 def adding(place, folder, diary):
     diary = os.open(diary, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     def progress(done, total):
@@ -239,13 +245,25 @@ def synchronise_killed(
     return seen
 
 
-@pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 22))])
-def test_nothing_is_lost_and_nothing_comes_twice(nursery: Nursery, seed: int, empty_file: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("where", "seed"),
+    [
+        ("server", 1),
+        *(pytest.param(*each, marks=pytest.mark.slow) for each in product(("file", "server"), range(2, 22))),
+    ],
+)
+def test_nothing_is_lost_and_nothing_comes_twice(
+    nursery: Nursery, where: str, seed: int, empty_file: Path, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     generator = np.random.default_rng(seed)
     laptops = {who: Path(shutil.copy(empty_file, tmp_path / f"{who}.sqlite3")) for who in ("Ada", "Bo")}
     for who, place in laptops.items():
         entered_offline(place, who, tmp_path, generator)
-    group = str(shutil.copy(empty_file, tmp_path / "group.sqlite3"))
+    if where == "server":
+        server: Server = request.getfixturevalue("server")
+        group = server.emptied()
+    else:
+        group = str(shutil.copy(empty_file, tmp_path / "group.sqlite3"))
     seen = synchronise_killed(nursery, group, laptops, generator)
     assert seen["killed"] >= 2, seen
     with Store.open(laptops["Ada"]) as ada, Store.open(laptops["Bo"]) as bo, Store.open(group) as shared:

@@ -1,4 +1,4 @@
-"""The store, a file: campaigns byte for byte, and journals (event sourcing) of those being entered."""
+"""The store, a file or on a server: campaigns byte for byte, and journals (event sourcing) of those being entered."""
 
 from .conflict import Conflict, Side
 from .export import (
@@ -18,6 +18,7 @@ from .export import (
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
 from .replayed import Reading, ReplayedCampaign, ReplayedTest, campaign_files, campaign_in_memory, replay_journal
+from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 from .stored_tables import StoredTable, stored_tables
 from .sync import SyncResult, sync
@@ -25,8 +26,8 @@ from .sync import SyncResult, sync
 __all__ = [
     "AddedCampaign", "Conflict", "ExportedCampaign", "Finding", "FoundCampaign", "JournalEntry", "JournalHead",
     "Journals", "NewEntry", "OvertakenError", "Position", "Reading", "ReplayedCampaign", "ReplayedTest",
-    "Side", "Store", "StoredCampaign", "StoredFile", "StoredTable", "SyncResult",
+    "ServerAddress", "Side", "Store", "StorePlace", "StoredCampaign", "StoredFile", "StoredTable", "SyncResult",
     "attachments_of", "campaign_files", "campaign_in_memory", "corrected_files", "default_path", "entered_files",
     "export_corrected", "export_entered", "find_campaign", "photo_entry", "position_entry", "replay_journal",
-    "stored_tables", "sync", "write_campaign",
+    "store_place", "stored_tables", "sync", "write_campaign",
 ]  # fmt: skip

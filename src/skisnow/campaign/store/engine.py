@@ -1,7 +1,8 @@
-"""Database of the store: connections, transactions, schema, error messages.
+"""Database of the store: connections, transactions, schema of a file, error messages.
 
-Every connection has foreign keys switched on and waits for others, and every commit is on the disk before it returns
-(``synchronous=FULL``). Each operation opens and closes a connection; threads share none.
+`server` opens a store on a server. In a file every connection has foreign keys switched on and waits for others, and
+every commit is on the disk before it returns (``synchronous=FULL``). Each operation opens and closes a connection;
+threads share none.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ from ..._support.sqlite_file import (
     primary_code,
     require_schema,
 )
-from .schema import APPLICATION_ID, REVISION, metadata
+from .schema import APPLICATION_ID, metadata
+from .server import ServerAddress, StorePlace, lock_for_writing, needs_migration, open_server, reason
 
 _DAMAGED: Final = Message("the file is damaged; restore a backup, or export the readable part")
 _NO_STORE: Final = Message("this file is not a store; name another file")
@@ -55,7 +57,7 @@ _FAILURES: Final = {
 
 
 @contextmanager
-def database_errors(store: Path, code: str) -> Iterator[None]:
+def database_errors(store: StorePlace, code: str) -> Iterator[None]:
     """Convert database errors to a `StoreError` with a remedy and a code of `_FAILURES`."""
     try:
         yield
@@ -63,6 +65,8 @@ def database_errors(store: Path, code: str) -> Iterator[None]:
         store = getattr(getattr(error, "orig", None) or error, "skisnow_place", store)
         if isinstance(error, UnicodeDecodeError):  # SQLite's message contains damaged text from the schema
             why: str = _DAMAGED
+        elif isinstance(store, ServerAddress):
+            why = reason(error, store)
         else:
             why = _file_reason(getattr(error, "orig", error), store)
         place = Message("The store {store}", store=store)
@@ -100,7 +104,11 @@ def file_errors(place: Path, code: str) -> Iterator[None]:
 @contextmanager
 def reading(engine: Engine) -> Iterator[Connection]:
     """Connection that reads a snapshot of the store, independent of other writers; it cannot commit."""
-    with engine.connect() as connection:  # ended by a rollback, which works on damaged files, where COMMIT does not
+    with (
+        engine.connect() as connection
+    ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
+        if not is_file(connection):
+            connection.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
         yield connection
 
 
@@ -108,16 +116,36 @@ def reading(engine: Engine) -> Iterator[Connection]:
 def writing(engine: Engine) -> Iterator[Connection]:
     """Connection in one transaction that has the write lock from its start; it is undone after an exception."""
     with engine.connect() as connection, connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+        if not is_file(connection):
+            lock_for_writing(connection)
         yield connection
 
 
-def open_engine(place: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+@contextmanager
+def savepoint(connection: Connection) -> Iterator[None]:
+    """Savepoint: after a failure inside, the transaction stays usable; a server would abort it otherwise."""
+    if is_file(connection):
+        yield
+    else:
+        with connection.begin_nested():
+            yield
+
+
+def is_file(connection: Connection) -> bool:
+    """True for an SQLite file, False for a server."""
+    return connection.dialect.name == "sqlite"
+
+
+def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> Engine:
     """Connect to the database and bring its schema up to date.
 
     Raises StoreError: it is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
     with database_errors(place, "not_usable"):
-        engine = _open_file(place, create=create, busy_timeout_s=busy_timeout_s)
+        if isinstance(place, ServerAddress):
+            engine = open_server(place, create=create, busy_timeout_s=busy_timeout_s)
+        else:
+            engine = _open_file(place, create=create, busy_timeout_s=busy_timeout_s)
 
     def remember_place(context: ExceptionContext) -> None:  # so that messages name the right one of two stores
         context.original_exception.skisnow_place = place  # type: ignore[attr-defined]
@@ -201,24 +229,7 @@ def _revision(connection: Connection, path: Path) -> str | None:
 def _is_outdated(engine: Engine, path: Path) -> bool:
     """True if the store needs a migration; StoreError as `_needs_migration`."""
     with reading(engine) as connection:
-        return _needs_migration(_revision(connection, path), path)
-
-
-def _needs_migration(revision: str | None, path: Path) -> bool:
-    """True if a store with that revision needs a migration.
-
-    Raises StoreError: this program does not know the migration.
-    """
-    if revision == REVISION:
-        return False  # the usual case: alembic need not even be imported
-    from .migrations import is_known
-
-    if revision is not None and not is_known(revision):
-        raise StoreError(
-            "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
-            "skisnow, or name another store."
-        ).tag("unknown_schema", place=path, revision=revision, known=REVISION)
-    return True
+        return needs_migration(_revision(connection, path), path)
 
 
 def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
@@ -231,7 +242,7 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
         # transaction, and are checked before its end.
         connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
         with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
-            if not _needs_migration(_revision(connection, path), path):
+            if not needs_migration(_revision(connection, path), path):
                 return  # another process was faster
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:

@@ -21,7 +21,7 @@ from sqlalchemy.exc import DatabaseError
 from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import toml_values
-from .engine import database_errors, reading, writing
+from .engine import database_errors, reading, savepoint, writing
 from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, now, parse_entry, uid_of_file, write_entry
 from .rows import damage_error, require_type
 from .schema import campaign, journal, journal_entry
@@ -224,7 +224,8 @@ def entered_name(connection: Connection, journal_id: str) -> str:
     columns = journal_entry.c
     descriptions = select(journal_entry).where(columns.journal_id == journal_id, columns.file == DESCRIPTION)
     try:
-        entries = [parse_entry(row) for row in connection.execute(descriptions).mappings()]
+        with savepoint(connection):
+            entries = [parse_entry(row) for row in connection.execute(descriptions).mappings()]
         last = max(entries, key=lambda entry: entry.uid, default=None)
         name = toml_values(last.cells[DESCRIPTION]).get("name") if last is not None else ""
     except (StoreError, ParameterError, KeyError, DatabaseError, UnicodeDecodeError):

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Final
 
 from sqlalchemy import (
+    BigInteger,
     CheckConstraint,
     Column,
     ForeignKey,
@@ -29,6 +30,9 @@ REVISION: Final = "0005"
 
 APPLICATION_ID: Final = 0x536B6953
 """Number in the file's header ("SkiS") that tells a store from other people's SQLite files."""
+
+MARK: Final = "campaigns of a store of skisnow"
+"""Comment on a table that tells a store on a server from other people's tables."""
 
 CHUNK_BYTES: Final = 1 << 20
 
@@ -53,6 +57,7 @@ campaign = Table(
     Column("n_warnings", Integer),
     CheckConstraint("id = substr(sha256, 1, 12)", name="id_from_sha256"),
     CheckConstraint("(n_errors IS NULL) = (n_warnings IS NULL)", name="both_counts_or_none"),
+    comment=MARK,
 )
 """``added_at``: UTC, ISO 8601. Counts are NULL where the campaign could not be checked."""
 
@@ -60,7 +65,7 @@ content = Table(
     "content",
     metadata,
     Column("sha256", String(64), primary_key=True),
-    Column("size", Integer, nullable=False),
+    Column("size", BigInteger().with_variant(Integer, "sqlite"), nullable=False),
     CheckConstraint("size >= 0", name="size_not_negative"),
 )
 

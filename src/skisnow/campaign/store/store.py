@@ -1,4 +1,4 @@
-"""Store of campaigns: raw files byte for byte in an SQLite file.
+"""Store of campaigns: raw files byte for byte in an SQLite file, or on a PostgreSQL server.
 
 An import is one transaction: also if the process is killed, the store has the whole campaign or nothing of it. A
 campaign's id is computed from its content, so the same files have the same id in all stores.
@@ -46,6 +46,7 @@ from .rows import (
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
+from .server import ServerAddress, StorePlace, store_place
 from .verification import Finding, findings
 
 __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", "default_path"]
@@ -76,20 +77,24 @@ class Store(Shown):
     skisnow.read_campaign
     """
 
-    def __init__(self, path: Path, engine: Engine) -> None:
+    def __init__(self, path: StorePlace, engine: Engine) -> None:
         self.path = path
         self.engine = engine
 
     @classmethod
-    def open(cls, path: Path | str | None = None, *, create: bool = True, busy_timeout_s: float = 30.0) -> Self:
+    def open(
+        cls, path: Path | str | ServerAddress | None = None, *, create: bool = True, busy_timeout_s: float = 30.0
+    ) -> Self:
         """Open a store, and migrate it to the current schema.
 
-        path: SQLite file (default: `default_path`).
-        create: True to create a missing file with its folders.
+        path: SQLite file, or a database as ``postgresql://USER@HOST/DATABASE`` (default: `default_path`).
+        create: True to create a missing file with its folders, or missing tables in the database.
         busy_timeout_s: longest wait for another process that writes (s).
         Raises StoreError: the store does not exist, is something else, or has an unknown schema.
         """
-        place = default_path() if path is None else Path(path).absolute()
+        place = default_path() if path is None else store_place(path)
+        if isinstance(place, ServerAddress):
+            return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
         with file_errors(place, "not_usable"):
             if place.is_dir():
                 raise StoreError("{place} is a folder, not a store; name a file.").tag("not_a_file", place=place)
@@ -153,7 +158,7 @@ class Store(Shown):
             raise StoreError("{folder} is not a folder; name the folder with the campaign's files.").tag(
                 "no_folder", folder=folder
             )
-        if self.path.resolve().is_relative_to(folder.resolve()):
+        if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
             raise StoreError("The store {path} is in {folder} itself; keep it somewhere else.").tag(
                 "inside_folder", path=self.path, folder=folder
             )

@@ -69,7 +69,7 @@ def sync(
 ) -> SyncResult:
     """Transfer missing campaigns and entries between two stores, except contradicting entries about a test.
 
-    here, there: the user's store, where choices are written first; the group's store.
+    here, there: the user's store, where choices are written first; the group's store, on a server or in a file.
     keep: sides to keep by id of the conflict or ``"all"``: here, there, or both if possible.
     who: author of the choices.
     progress: called with the number of compared campaigns and their total.

@@ -10,10 +10,12 @@ from sqlalchemy.exc import DatabaseError, NoResultFound
 
 from ..._support.errors import StoreError
 from ..._support.user_files import natural_number
+from .engine import is_file, savepoint
 from .folder import Progress, manifest_sha256, unsafe_because
 from .journal_entry import as_bytes, entry_sha256, readable_entry
 from .rows import is_sound, stored_campaign
 from .schema import campaign, campaign_file, content, journal_entry
+from .server import broken_references
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -31,8 +33,9 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
         find_entry_damage,
     ):
         try:
-            for finding in of_part(connection):
-                damage.append(finding)
+            with savepoint(connection):
+                for finding in of_part(connection):
+                    damage.append(finding)
         except (DatabaseError, UnicodeDecodeError) as error:
             why = getattr(error, "orig", error)
             stopped = Finding(None, None, f"cannot be read further: {why}; put a backup in its place")
@@ -41,7 +44,12 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
 
 
 def _database_damage(connection: Connection) -> Iterator[Finding]:
-    """Findings of SQLite's own checks of integrity and foreign keys."""
+    """Findings of the checks of integrity and foreign keys, by SQLite itself for a file."""
+    if not is_file(connection):
+        for table, parent, number in broken_references(connection):
+            rows = f"{number} row{'' if number == 1 else 's'} of table {table}"
+            yield Finding(None, None, f"{rows} pointing at what table {parent} does not hold")
+        return
     for message in connection.exec_driver_sql("PRAGMA integrity_check").scalars():
         if message != "ok":
             yield Finding(None, None, f"SQLite's integrity check: {message}")
@@ -67,7 +75,8 @@ def _content_damage(connection: Connection, progress: Progress) -> Iterator[Find
 def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
     """True if stored bytes have this SHA-256 and size; False also if they cannot be read."""
     try:
-        return isinstance(sha256, str) and is_sound(connection, sha256, size)
+        with savepoint(connection):
+            return isinstance(sha256, str) and is_sound(connection, sha256, size)
     except (DatabaseError, UnicodeDecodeError):  # the pages that hold it are broken; other files may be whole
         return False
 
@@ -124,7 +133,10 @@ def find_entry_damage(connection: Connection) -> Iterator[Finding]:
 def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
     """All journal entries by sequence, with values as bytes: invalid text does not stop the check."""
     columns = journal_entry.c
-    query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
+    if is_file(connection):
+        query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
+    else:
+        query = select(*columns)  # a server has only valid text
     for row in connection.execute(query.order_by(columns.sequence)).mappings().all():
         yield {str(name): as_bytes(value) for name, value in row.items()}
 

@@ -44,7 +44,8 @@ def upgrade(connection: Connection) -> None:
             return
         command.stamp(alembic_config(connection), "head")
         metadata.create_all(connection)
-        connection.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
+        if connection.dialect.name == "sqlite":
+            connection.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
 
 
 def downgrade(connection: Connection, revision: str) -> None:
