@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from .._support.errors import FieldDataError
+from .._support.errors import FieldDataError, ParameterError
 from .options import MOST_RESAMPLES, add_language, number, seed_number, whole_number
 from .output import Progress, prepare_output
 
@@ -152,23 +152,34 @@ def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Find tables, columns, units, tools and sites in FILE, ask for what the file does not state, and "
         "write a campaign with the original file and the mapping. Each answer is also an option (repeatable).",
     )
-    parser.add_argument("file", type=Path, metavar="FILE", help="workbook (.xlsx) or CSV file")
-    parser.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to write, new or empty")
+    parser.add_argument("file", type=Path, nargs="?", metavar="FILE", help="workbook (.xlsx) or CSV file")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder to write, new or empty")
     parser.add_argument(
         "--yes",
         action="store_true",
         help="do not ask: accept what headings, units and notes state, and reject the file if anything else is needed",
     )
-    parser.add_argument("--template", metavar="DIR", help="campaign of an earlier import, with its answers")
+    parser.add_argument(
+        "--template", metavar="NAME|DIR", help="saved template, or campaign of an earlier import, with its answers"
+    )
+    parser.add_argument("--save-template", metavar="NAME", help="save the answers under a name for the next campaign")
+    parser.add_argument("--undo", type=Path, metavar="DIR", help="remove the files of an import, if none was changed")
     for option, (form, about) in OPTIONS.items():
         parser.add_argument(f"--{option}", action="append", default=[], metavar=form, help=about)
     parser.set_defaults(run=import_file)
 
 
 def import_file(options: argparse.Namespace) -> int:
-    """Import a file as a campaign, and print the written files."""
-    from ..campaign.importing.folder import write_import
+    """Import a file as a campaign, or undo an import, and print the written or removed files."""
+    from ..campaign.importing.answers import save_template
+    from ..campaign.importing.folder import undo_import, write_import
+    from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 
+    if options.undo is not None:
+        print(f"Removed: {', '.join(undo_import(options.undo))}")
+        return 0
+    if options.file is None or options.out is None:
+        raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.").tag("missing_option")
     asks = not options.yes and sys.stdin.isatty()
     proposal = _ask_questions(options, _read_answers(options), asks=asks)
     if proposal.problems:
@@ -177,6 +188,9 @@ def import_file(options: argparse.Namespace) -> int:
     if asks and input("Write this campaign? [y/N] ").strip().lower() not in {"y", "yes", "j", "ja"}:
         print("Nothing was written.")
         return 1
+    if options.save_template is not None:
+        saved = save_template(options.save_template, proposal.files[CAMPAIGN_FILE])
+        print(f"Template {options.save_template} saved: {saved}")
     write_import(proposal.files, options.out)
     print(f"Written: {', '.join(str(options.out / name) for name in proposal.files)}")
     print(f"Then: skisnow analyse {options.out}")

@@ -20,10 +20,14 @@ from starlette.responses import Response
 from .._support.errors import ParameterError, StoreError
 from .._support.messages import Message
 from ..campaign.importing.answers import (
+    TEMPLATES,
     Answers,
     parse_template,
+    read_template,
+    save_template,
+    saved_templates,
 )
-from ..campaign.importing.folder import is_imported, write_import
+from ..campaign.importing.folder import RECORD, write_import
 from ..campaign.importing.proposal import Proposal, propose
 from ..campaign.reading.campaign import READ_FILES, campaign_of_files
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
@@ -94,6 +98,7 @@ def write_campaign(lab: Lab, kind: str, id_: str, folder: Path) -> None:
 
 
 FOLDER: Final = "imports"
+_SAVED: Final = "saved:"  # before the name of a saved template, to distinguish it from ids of campaigns
 ENDINGS: Final = (".xlsx", ".xlsm", ".csv", ".txt", ".tsv")
 
 
@@ -141,11 +146,24 @@ class FileImports:
         return added
 
     def templates(self) -> dict[str, str]:
-        """Names of the imported campaigns by their ids, the newest first."""
+        """Names of the saved templates, then of imported campaigns, newest first, by their value in a menu."""
         stored = reversed(self._lab.store.list())
-        return {kept.id: kept.name for kept in stored if is_imported(file.path for file in kept.files)}
+        campaigns = {
+            campaign.id: campaign.name for campaign in stored if any(file.path == RECORD for file in campaign.files)
+        }
+        return {f"{_SAVED}{name}": name for name in saved_templates(self._templates)} | campaigns
+
+    def save_template(self, name: str, files: Mapping[str, bytes]) -> None:
+        """Save the mapping of an import under a name; ParameterError for a name that cannot be used."""
+        save_template(name.strip(), files[CAMPAIGN_FILE], folder=self._templates)
+
+    @property
+    def _templates(self) -> Path:
+        return self._lab.runs.parent / TEMPLATES
 
     def template_answers(self, id_: str) -> Answers:
-        """Answers to the questions of an import, from an earlier imported campaign."""
+        """Answers to the questions of an import, from a saved template or an earlier imported campaign."""
+        if id_.startswith(_SAVED):
+            return read_template(id_.removeprefix(_SAVED), named=self._templates)
         stored, files = self._lab.store.contents(required_id(id_), {CAMPAIGN_FILE})
         return parse_template(files[CAMPAIGN_FILE].decode(), stored.name)

@@ -178,12 +178,7 @@ READERS = (
         "cli.campaign:_ask_questions",
     ),
     single_file(
-        "[import]",
-        _imported,
-        lambda path: read_template(path.parent),
-        TOML,
-        "campaign.importing.answers:read_template",
-        target="campaign.toml",
+        "[import]", _imported, read_template, TOML, "campaign.importing.answers:read_template", target="campaign.toml"
     ),
     single_file("pit.caaml", _pit, read_caaml, XML, "campaign.caaml:read_caaml"),
     single_file("station.smet", _SMET, lambda path: repr(read_smet(path)), TEXT, "campaign.smet:read_smet"),

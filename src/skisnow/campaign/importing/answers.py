@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any, Final, Self
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
+from ..._support.staging import write_file
 from ..._support.user_files import read_toml, toml_text, toml_values
 from ..problems import Problem, error
 from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
@@ -17,6 +19,8 @@ from ..reading.headings import plain_heading
 SECTION: Final = "import"
 NONE: Final = "-"
 """Answer for a table or column that is not imported."""
+TEMPLATES: Final = "import-templates"
+_NAME: Final = re.compile(r"[^\W_][\w .()-]{0,59}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,13 +87,56 @@ def _split(kind: str, text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def read_template(folder: str | Path) -> Answers:
-    """Read the answers of an earlier import from the folder of its campaign.
+def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
+    """Read the answers of an earlier import.
 
-    Raises ParameterError: no such campaign; its campaign.toml has no ``[import]``, or an answer is not a text.
+    place: name of a saved template, folder of a campaign, or a campaign.toml.
+    named: folder of the saved templates (default: the user's own).
+    Raises ParameterError: no such template or campaign; the file has no ``[import]``, or an answer is not a text.
     """
-    path = Path(folder) / CAMPAIGN_FILE
+    saved = saved_templates(named)
+    path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else saved.get(str(place), Path(place))
+    if not path.exists():
+        raise ParameterError("{name} is neither a saved template nor a campaign. Saved: {saved}.").tag(
+            "no_template", name=str(place), saved=list(saved) or Message("none")
+        )
     return _template_answers(read_toml(path), str(path))
+
+
+def saved_templates(folder: Path | None = None) -> dict[str, Path]:
+    """Files of the saved templates by name, in a folder or the user's own."""
+    return {path.stem: path for path in sorted(_templates_folder(folder).glob("*.toml"))}
+
+
+def _templates_folder(folder: Path | None) -> Path:
+    """The same folder; for None that of the user's own templates, in the user's data folder."""
+    from platformdirs import user_data_path
+
+    return folder or user_data_path("skisnow") / TEMPLATES
+
+
+def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> Path:
+    """Save the answers of an import as a template under a name; returns the path of its file.
+
+    name: letters, digits, spaces and ``-_.()``; its first character is a letter or digit.
+    campaign: contents of the campaign.toml of the import.
+    folder: folder of the saved templates (default: the user's own).
+    Raises ParameterError: another name is needed, also because a template with other answers has it.
+    """
+    if not _NAME.fullmatch(name):
+        raise ParameterError(
+            "{name!r} is not a name of a template. Allowed: up to 60 letters, digits, spaces and -_.(), beginning with "
+            "a letter or digit."
+        ).tag("bad_name", name=name)
+    text = "\n".join(parse_template(campaign.decode(), name).toml_lines()).lstrip() + "\n"
+    path = _templates_folder(folder) / f"{name}.toml"
+    if path.exists() and path.read_text(encoding="utf-8") != text:
+        raise ParameterError("A template {name} with other answers exists. Take another name, or remove {file}.").tag(
+            "name_in_use", name=name, file=path
+        )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_file(path, text)
+    return path
 
 
 def parse_template(text: str, name: str) -> Answers:

@@ -1,8 +1,9 @@
-"""Campaign folder of an import: tools, tables, campaign.toml with the template, original bytes."""
+"""Campaign folder of an import: tools, tables, campaign.toml with the template, original bytes, and the undo."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,13 +13,14 @@ from typing import Final, Literal
 from ..._support.errors import OutputError
 from ..._support.messages import Message
 from ..._support.staging import prepare_folder, staged, write_file
-from ..._support.user_files import toml_text
+from ..._support.user_files import own_json, toml_text
 from ..reading.campaign_file import CAMPAIGN_FILE
 from .answers import SECTION, Answers, Dialogue
 from .columns import PLATE, TOOL, Note, gauge_steps_mm, length_mm, stated_observers, stated_plates, stated_tools
 from .rows import ImportedTable
 
 ORIGINAL: Final = "original"
+RECORD: Final = f"{ORIGINAL}/import.json"
 
 
 def description(
@@ -45,9 +47,11 @@ def description(
 
 
 def campaign_files(tables: Mapping[str, str], described: str, name: str, data: bytes) -> dict[str, bytes]:
-    """Files of the new campaign by path: tables, campaign.toml (`described`), and the imported file."""
+    """Files of the new campaign by path: tables, campaign.toml (`described`), the imported file, and their hashes."""
     texts = {CAMPAIGN_FILE: described, **tables}
-    return {path: text.encode() for path, text in texts.items()} | {f"{ORIGINAL}/{PurePath(name).name}": data}
+    files = {path: text.encode() for path, text in texts.items()} | {f"{ORIGINAL}/{PurePath(name).name}": data}
+    hashes = {path: hashlib.sha256(content).hexdigest() for path, content in files.items()}
+    return files | {RECORD: json.dumps(hashes, ensure_ascii=False, indent=1).encode()}
 
 
 def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
@@ -67,9 +71,37 @@ def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
             write_file(stage.path / path, content)
 
 
-def is_imported(paths: Iterable[str]) -> bool:
-    """True for the paths of the files of a campaign that was imported from a file in another layout."""
-    return any(path.startswith(f"{ORIGINAL}/") for path in paths)
+def undo_import(folder: str | Path) -> list[str]:
+    """Remove the files that an import wrote; returns their paths.
+
+    Raises OutputError: the folder has no record of an import, or a file was changed since; nothing is removed then.
+    """
+    folder = Path(folder)
+    try:
+        hashes = own_json((folder / RECORD).read_bytes())
+        inside = folder.resolve()
+        if not isinstance(hashes, dict) or not all((folder / path).resolve().is_relative_to(inside) for path in hashes):
+            raise ValueError(RECORD)
+        changed = [path for path, digest in hashes.items() if _sha256(folder / path) != digest]
+    except (OSError, ValueError) as failure:
+        raise OutputError("{folder} has no {record}; nothing was removed.").tag(
+            "no_import", folder=folder, record=RECORD
+        ) from failure
+    if changed:
+        raise OutputError(
+            "Changed since the import: {files}. Nothing was removed. Keep these files, and delete the folder."
+        ).tag("changed_since", files=changed)
+    removed = [*hashes, RECORD]
+    for path in removed:
+        (folder / path).unlink(missing_ok=True)
+    for place in (folder / ORIGINAL, folder):
+        if not any(place.iterdir()):
+            place.rmdir()
+    return removed
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
 
 
 TOOL_FORM: Final = "ski 200 x 62 mm"

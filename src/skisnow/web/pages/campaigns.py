@@ -14,7 +14,7 @@ from nicegui import run, ui
 from ..._support.errors import StoreError
 from ..._support.messages import Message, template
 from ...campaign import write_reference
-from ...campaign.importing.folder import is_imported
+from ...campaign.importing.folder import RECORD
 from ...campaign.store import Journals, StoredCampaign
 from ...replay.page import STYLE, page_words
 from ...report.formatting import counted
@@ -126,9 +126,8 @@ def _list_imported(lab: Lab) -> None:
                 link(Message("Correct"), correction_address(campaign.id))
                 link(Message("Analysis"), analysis("kept", campaign.id))
                 link(Message("Export"), export("kept", campaign.id))
-                if is_imported(file.path for file in campaign.files) and not Journals(lab.store).corrections(
-                    campaign.id
-                ):
+                is_from_other_layout = any(file.path == RECORD for file in campaign.files)
+                if is_from_other_layout and not Journals(lab.store).corrections(campaign.id):
                     button(Message("Undo the import"), partial(_undo_import, lab, campaign.id), once=True)
 
 

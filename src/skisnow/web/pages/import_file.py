@@ -97,6 +97,9 @@ class _ImportPage:
             self._store = button(Message("Store the campaign"), self._keep_campaign, "main", once=True)
             self._status = Outcome()
         self._tables = ui.element("div").classes("importing")
+        with ui.element("div").classes("acts"):
+            self._name = field(Message("Name of the template"), "")
+            button(Message("Save the answers as a template"), self._save_template, "small")
 
     async def draw(self) -> None:
         """Compute the proposal with the current answers, and show it."""
@@ -233,6 +236,10 @@ class _ImportPage:
         chosen = str(getattr(event, "value", ""))
         self.answers = self.imports.template_answers(chosen) if chosen else Answers()
         await self.draw()
+
+    def _save_template(self) -> None:
+        self.imports.save_template(str(self._name.value), self._ready_files())
+        self._status.say(Message("Template saved for the next campaign: {name}", name=self._name.value))
 
     def _ready_files(self) -> Mapping[str, bytes]:
         """Files of the campaign; rejects a proposal with open questions or errors."""

@@ -9,6 +9,8 @@ from nicegui import ui
 
 from skisnow import samples
 from skisnow.campaign import write_reference
+from skisnow.campaign.importing.answers import TEMPLATES
+from skisnow.campaign.importing.folder import RECORD
 from skisnow.campaign.store import Journals, NewEntry
 from skisnow.web.edit_session import EditSession
 
@@ -129,14 +131,18 @@ def test_workbook_is_proposed_stored_and_taken_back(desk: Desk, monkeypatch: pyt
     page.shows("other_unit")
     page.fill("Unit of Last", "kg")
     page.shows("1.163")
+    page.fill("Name of the template", "glacier")
+    page.press("Save the answers as a template")
+    page.shows("glacier")
+    assert (desk.lab.runs.parent / TEMPLATES / "glacier.toml").is_file()
+    again = desk.post("/import", files={"files": ("two-sites.xlsx", WORKBOOK)})
+    assert "saved:glacier" in desk.open(again.headers["location"]).field("Template").options
     page.press("Store the campaign")
     page.told("open ")
     (stored,) = desk.lab.store.list()
     assert {file.path for file in stored.files} == {
-        "campaign.toml", "penetration.csv", "shear.csv", "original/two-sites.xlsx",
+        "campaign.toml", "penetration.csv", "shear.csv", "original/two-sites.xlsx", RECORD,
     }  # fmt: skip
-    again = desk.post("/import", files={"files": ("two-sites.xlsx", WORKBOOK)})
-    assert stored.id in desk.open(again.headers["location"]).field("Template").options
     assert desk.lab.store.contents(stored.id, {"original/two-sites.xlsx"})[1].popitem()[1] == WORKBOOK
     assert stored.n_errors == 0
     desk.do(lambda: desk.lab.store.remove(stored.id))
