@@ -1,6 +1,7 @@
 """Files that belong to one campaign: branches of a series, and tables read together."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -135,7 +136,7 @@ def test_the_row_of_the_largest_moment_is_the_experiment(tmp_path: Path) -> None
     assert tests.turning.moment.tolist() == [10.0, 30.0, 25.0, 22.0]
     np.testing.assert_allclose(np.degrees(tests.turning.turning_angle), [0.1, 0.3, 0.5, 1.5])
     assert tests.turning.series_of_reading.tolist() == [0, 0, 0, 2]
-    assert "2 experiments, 4 readings" in repr(tests.turning)
+    assert re.search(r"moment +4: 10 to 30", repr(tests.turning))
     assert campaign.pole_stiffness == pytest.approx(90 / math.radians(1.0))
 
 
@@ -193,7 +194,7 @@ def test_both_branches_stand_apart_with_their_rows(tmp_path: Path) -> None:
     assert back.load.tolist() == [20.0, 10.0, 10.0]
     assert back.series_of_reading.tolist() == [0, 0, 1]
     np.testing.assert_allclose(back.penetration_depth, np.array([2.9, 2.7, 3.1]) * 1e-3)
-    assert "2 experiments, 3 readings" in repr(back)
+    assert re.search(r"load +3: 10 to 20", repr(back))
 
 
 def test_a_depth_read_once_more_stands_beside_its_reading(tmp_path: Path) -> None:
