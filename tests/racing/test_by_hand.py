@@ -94,7 +94,7 @@ def test_a_batch_begins_where_the_least_is_expected() -> None:
     pytest.importorskip("cmaes")
     places = np.array(list(product((0.1, 0.3, 0.5, 0.7), (0.2, 0.4, 0.6, 0.8))))
     values = (2.0 + (places[:, 0] - 0.3) ** 2 + (places[:, 1] - 0.6) ** 2).tolist()
-    chosen = search_of(values, places)._chosen(np.eye(2), 0.1, 1)
+    chosen = search_of(values, places)._choose_batch(np.eye(2), 0.1, 1)
     assert len(chosen) == len(BATCH)
     assert chosen[0] == pytest.approx([0.3, 0.6], abs=0.03)
     assert all(np.abs(each - [0.3, 0.6]).max() < 0.1 + 1e-9 for each in chosen)
@@ -105,7 +105,7 @@ def test_failures_are_no_centre() -> None:
     """The only point that passed is (0.8, 0.8): the box is about it, though the process expects less elsewhere."""
     pytest.importorskip("cmaes")
     places = [(0.2, 0.2), (0.2, 0.5), (0.5, 0.2), (0.8, 0.8)]
-    chosen = search_of([1000.2, 1000.3, 1000.1, 9.0], places)._chosen(np.eye(2), 0.05, 0)
+    chosen = search_of([1000.2, 1000.3, 1000.1, 9.0], places)._choose_batch(np.eye(2), 0.05, 0)
     assert all(np.abs(each - 0.8).max() < 0.05 + 1e-9 for each in chosen)
 
 

@@ -27,7 +27,7 @@ from skisnow.racing import (
 from skisnow.racing.line import first_gates
 from skisnow.racing.point import Racer
 from skisnow.racing.quickest import _fingerprint
-from skisnow.racing.worth import AS_IT_IS, _on_snow, wider
+from skisnow.racing.worth import AS_IT_IS, _variant_on_snow, wider
 from skisnow.track.course.gates_table import GateGap
 from tests.present import present
 
@@ -177,7 +177,7 @@ def test_a_ski_is_faster_only_where_the_whole_interval_says_so(gaps: tuple[float
 
 def test_on_a_drawn_snow_a_skier_assumes_the_scenarios_own() -> None:
     snow = replace(STRAIGHT.contact.snow, snow_hardness=9e8)
-    assumed = present(_on_snow(STRAIGHT, STRAIGHT, snow).skier)
+    assumed = present(_variant_on_snow(STRAIGHT, STRAIGHT, snow).skier)
     assert assumed.assumed_hardness == STRAIGHT.contact.snow.snow_hardness
     assert assumed.assumed_strength == STRAIGHT.contact.snow.failure_shear_stress
     assert Worth(name="", scores=(score(None),), base=(score(1.0),)).on_own_snow is None
@@ -293,12 +293,12 @@ def test_drawn_snows_lie_about_the_scenarios_own() -> None:
 
 
 def test_what_a_variant_changes_of_the_snow_it_changes_of_each_snow() -> None:
-    from skisnow.racing.worth import _on_snow
+    from skisnow.racing.worth import _variant_on_snow
 
     snow = replace(STRAIGHT.contact.snow, snow_hardness=2e8, failure_shear_stress=4e5)
     changes = worth_changes(STRAIGHT)
     harder, stronger = (
-        _on_snow(changes[name], STRAIGHT, snow).contact.snow for name in ("H_V 10 % more", "S_f 10 % more")
+        _variant_on_snow(changes[name], STRAIGHT, snow).contact.snow for name in ("H_V 10 % more", "S_f 10 % more")
     )
     assert (harder.snow_hardness, harder.failure_shear_stress) == pytest.approx((2.2e8, 4e5))
     assert (stronger.snow_hardness, stronger.failure_shear_stress) == pytest.approx((2e8, 4.4e5))

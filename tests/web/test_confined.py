@@ -16,7 +16,7 @@ from skisnow.studies import read_study
 from skisnow.web.page_requests import address, analysis, correction_address, entry_address, export, required_id
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from skisnow.web.uploads import BOUNDS, Bounds, confined
-from skisnow.web.widgets import _short
+from skisnow.web.widgets import _round_to_pixels
 from skisnow.web.words import typed_number
 from tests.coded import raises
 
@@ -105,7 +105,7 @@ def test_what_is_none_is_reported(text: str) -> None:
     ],
 )
 def test_five_digits_of_the_largest(values: list[float | None], sent: list[float | None]) -> None:
-    assert _short(values) == sent
+    assert _round_to_pixels(values) == sent
 
 
 TURNS = StudyQuestion(

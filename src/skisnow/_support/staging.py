@@ -60,9 +60,9 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
         _require_own(folder, last, [*stage.stale, *_list_files(stage.path)])
         write_file(hidden / _PLAN, "\n".join((last, *stage.stale)))
         try:
-            _carry_out(hidden)
+            _replace_files(hidden)
         except KeyboardInterrupt:
-            _carry_out(hidden)  # it takes a moment, and half of it would be no run at all
+            _replace_files(hidden)  # it takes a moment, and half of it would be no run at all
             raise
     except OSError as error:
         raise cannot_write(folder, error) from error
@@ -95,7 +95,7 @@ def _finish_or_remove(hidden: Path) -> str | None:
     try:
         if not (hidden / _PLAN).is_file():
             return f"{hidden} was left by a process that was killed; it is removed"
-        _carry_out(hidden)
+        _replace_files(hidden)
         return f"{hidden.parent}: the files that a killed process had not yet moved are in place now"
     finally:
         shutil.rmtree(hidden, ignore_errors=True)
@@ -112,7 +112,7 @@ def _new_hidden(folder: Path) -> tuple[Path, int | None]:
     return hidden, lock
 
 
-def _carry_out(hidden: Path) -> None:
+def _replace_files(hidden: Path) -> None:
     """Remove all old files, then move the new ones into place; after an interruption it can be repeated."""
     folder, stage = hidden.parent, hidden / _FILES
     try:

@@ -80,10 +80,10 @@ def _report_end(error: Exception | KeyboardInterrupt) -> int:
         print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)
         return 143 if isinstance(error, Ended) else 130
     if isinstance(error, BrokenPipeError):
-        return _stdout_lost()
+        return _replace_lost_stdout()
     if isinstance(error, OSError):
         print(f"skisnow: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", file=sys.stderr)
-        return _stdout_lost()
+        return _replace_lost_stdout()
     if isinstance(error, SkisnowError | MemoryError):
         _print_error(error)
         return 1
@@ -113,7 +113,7 @@ def _short(message: str) -> str:
     return message if len(message) <= LONGEST_MESSAGE else f"{message[:LONGEST_MESSAGE]} …"
 
 
-def _stdout_lost() -> int:
+def _replace_lost_stdout() -> int:
     """Replace standard output if it cannot be written, so that Python prints no second error; returns exit status 1."""
     try:
         sys.stdout.flush()

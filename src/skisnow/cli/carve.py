@@ -188,7 +188,7 @@ def design_ski(options: argparse.Namespace) -> int:
 
     task = read_design(options.design)
     if options.front is not None:
-        return _front(options, task)
+        return _search_front(options, task)
     with Progress() as progress:
         design = design_ski(task, progress=lambda done, count: progress(f"{done} of {count} starts"))
     paths = design.write(options.out or options.design.parent)
@@ -217,7 +217,7 @@ def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) 
     write_figure(options.figure, lambda: carved_skis(answers_dict(answers)), language=options.language)
 
 
-def _front(options: argparse.Namespace, task: DesignTask) -> int:
+def _search_front(options: argparse.Namespace, task: DesignTask) -> int:
     """Search the Pareto front of two targets, write it, and print the paths or the points; returns exit status 0."""
     from ..design.search import design_front, write_front
 

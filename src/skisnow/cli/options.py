@@ -101,7 +101,7 @@ def number(
         value = written(word)
         if ranged and (not lowest <= value <= highest or (above and value == lowest)):
             ends = f"{'above' if above else 'from'} {lowest:g} to {highest:g}"
-            raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is a number {ends} in {unit}")
+            raise argparse.ArgumentTypeError(f"{_quoted(word)} is not allowed; allowed is a number {ends} in {unit}")
         return value
 
     def written(word: str) -> float:
@@ -112,7 +112,7 @@ def number(
             example = f", such as {match[0].replace(',', '.')}" if match else ""
             where = f" in {unit}, without the unit" if unit else ""
             raise argparse.ArgumentTypeError(
-                f"{_shown(word)} is not a number; write one with a decimal point{where}{example}"
+                f"{_quoted(word)} is not a number; write one with a decimal point{where}{example}"
             ) from None
 
     return read
@@ -128,16 +128,16 @@ def whole_number(
             value = int(word)
         except ValueError:
             example = f"write one such as {int(lowest) if lowest > 0 else 160}"
-            raise argparse.ArgumentTypeError(f"{_shown(word)} is not a whole number; {example}") from None
+            raise argparse.ArgumentTypeError(f"{_quoted(word)} is not a whole number; {example}") from None
         if not (lowest <= value <= highest or (or_zero and value == 0)):
             allowed = f"{'0, or ' if or_zero else ''}{lowest} to {highest}"
-            raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is a whole number, {allowed}")
+            raise argparse.ArgumentTypeError(f"{_quoted(word)} is not allowed; allowed is a whole number, {allowed}")
         return value
 
     return read
 
 
-def _shown(word: str, limit: int = 80) -> str:
+def _quoted(word: str, limit: int = 80) -> str:
     """A word in quotes for a message, cut after `limit` characters."""
     return repr(word if len(word) <= limit else f"{word[:limit]}…")
 

@@ -51,14 +51,14 @@ def write_pages(options: argparse.Namespace) -> int:
 
     shown = replay_of_file(options.folder, title=options.title)
     if options.track is not None:
-        shown = replay_of_file(options.folder, title=options.title, track=_beside(options, shown))
+        shown = replay_of_file(options.folder, title=options.title, track=_read_measured_track(options, shown))
     ghost = None if options.other is None else replay_of_file(options.other)
     folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
     print(write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language))
     return 0
 
 
-def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
+def _read_measured_track(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     """Read the measured track of an option in the axes of the run."""
     from .._support.units import DEGREE
     from ..replay import measured_track

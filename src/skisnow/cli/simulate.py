@@ -254,7 +254,7 @@ def simulate_turn(options: argparse.Namespace) -> int:
     print_warnings(scenario_input.warnings)
     prepare_output(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
-    numbers = _given(changes_of(options), scenario_input.scenario.contact)
+    numbers = _contact_changes(changes_of(options), scenario_input.scenario.contact)
     chosen = numbers | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
         chain = turn(
@@ -273,7 +273,7 @@ def simulate_turn(options: argparse.Namespace) -> int:
     return 0
 
 
-def _given(changes: Mapping[str, object], contact: Contact) -> dict[str, Any]:
+def _contact_changes(changes: Mapping[str, object], contact: Contact) -> dict[str, Any]:
     """k_u/H_V and u_y among the changes, which override the values of the campaign."""
     values = {
         "snow.unloading_ratio": ("unloading_ratio", contact.unloading_ratio),

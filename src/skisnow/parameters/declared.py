@@ -282,7 +282,9 @@ def _make_slot(owner: type, field: Field[Any]) -> _Slot:
     return _Slot(
         field,
         tuple(
-            declaration if isinstance(declaration, Word) else _resolved(declaration, marks, field, members, needed)
+            declaration
+            if isinstance(declaration, Word)
+            else _completed_quantity(declaration, marks, field, members, needed)
             for declaration in declared
         ),
         parts,
@@ -317,7 +319,7 @@ def _union_members(hint: Any) -> tuple[Any, ...]:
     return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
 
 
-def _resolved(
+def _completed_quantity(
     quantity: Quantity, marks: tuple[Any, ...], field: Field[Any], members: tuple[Any, ...], needed: bool
 ) -> Quantity:
     """Copy of a quantity, completed with range, label and more of its annotation, and kind and default of its field."""

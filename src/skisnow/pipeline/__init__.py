@@ -115,7 +115,7 @@ def turn(
     _require_inputs(unloading_ratio, shear_displacement, runs)
     workers = worker_count(workers)
     say = progress or (lambda *_: None)
-    analysis = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
+    analysis = campaign if isinstance(campaign, Analysis) else _analyse_site(campaign, site, progress)
     snow = analysis.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
         snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
@@ -149,7 +149,9 @@ def turn(
     )
 
 
-def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None) -> Analysis:
+def _analyse_site(
+    campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None
+) -> Analysis:
     """Read and analyse a campaign; a site without penetration tests is an error before the long estimates."""
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     pressed = set(read.penetration.site) if read.penetration is not None else set()
@@ -276,10 +278,12 @@ def ensemble_of(
         progress(f"run {done} of {count}")
 
     first, *rows = run_batch(points, simulate_fast, workers=workers, progress=tell)
-    moved = _apart(first, [[column[-1]] for column in nominal.place[:, :2].T])
+    moved = _end_distance(first, [[column[-1]] for column in nominal.place[:, :2].T])
     runs = [_ensemble_run(scenario, row, inputs) for scenario, row in zip(scenarios, rows, strict=False)]
     beside = iter(rows[len(scenarios) :])
-    moves = {key: max(_apart(next(beside), first["track"][1:]) for _ in nudges) for key, nudges in nudged.items()}
+    moves = {
+        key: max(_end_distance(next(beside), first["track"][1:]) for _ in nudges) for key, nudges in nudged.items()
+    }
     return runs, moved, limit_sentences(moves, nominal.run_length)
 
 
@@ -295,6 +299,6 @@ def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prio
     )
 
 
-def _apart(row: Row, place: Sequence[Sequence[float]]) -> float:
+def _end_distance(row: Row, place: Sequence[Sequence[float]]) -> float:
     """Distance (m) of the end of a row's track from the last place of another track, given as x and y."""
     return float(np.hypot(*(column[-1] - other[-1] for column, other in zip(row["track"][1:], place, strict=True))))

@@ -328,18 +328,18 @@ class SurrogateSearch:
         waited = 0
         while len(self.batches.found) < count and box > BOX[0]:
             before = self.batches.least.value
-            self.batches.evaluate(self._chosen(directions, box, phase))
+            self.batches.evaluate(self._choose_batch(directions, box, phase))
             better = self.batches.least.value < before - self.settled
             box = min(BOX[1], box * BOX_CHANGES[better])
             waited = 0 if better else waited + 1
             if self.settled > 0.0 and waited == PATIENCE:
                 return
 
-    def _chosen(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
+    def _choose_batch(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
         """Places of the next batch; each is chosen as if the earlier ones had been evaluated as predicted."""
         evaluations = self.batches.found
         prospects = Prospects.of(evaluations, self.kinds)
-        centre = self._steps_along(directions, np.array(self._centre(prospects).place))
+        centre = self._steps_along(directions, np.array(self._best_predicted(prospects).place))
         chosen: list[FloatArray] = []
         for daring in BATCH:
             seed = (*self.seed, phase, len(evaluations), len(chosen))
@@ -353,7 +353,7 @@ class SurrogateSearch:
             prospects = prospects.with_mean_at(place)
         return chosen
 
-    def _centre(self, prospects: Prospects) -> Evaluated:
+    def _best_predicted(self, prospects: Prospects) -> Evaluated:
         """Evaluation that passes all gates with the smallest predicted time; without one, that with the least value."""
         evaluations = self.batches.found
         passed = passed_of(evaluations)

@@ -147,7 +147,7 @@ def compare_variants(
     if start is not None:
         raced[START] = scenario, start
     raced |= {name: (variant, line) for name, variant in others.items()}
-    points = [(_on_snow(variant, scenario, snow), along) for variant, along in raced.values() for snow in snows]
+    points = [(_variant_on_snow(variant, scenario, snow), along) for variant, along in raced.values() for snow in snows]
     finished_rows = None
     if checkpoint is not None:
         finished_rows = KeptRows.opened(checkpoint, _fingerprint(points, model))
@@ -219,7 +219,7 @@ def wider(ski: Ski, more: float) -> Ski:
     return replace(ski, name=f"{ski.name}, waist {more * 1e3:+g} mm", width=ski.width + more * (1.0 - along**2))
 
 
-def _on_snow(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
+def _variant_on_snow(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
     """Variant on another snow, multiplied by the variant's ratios of H_V and S_f to those of the base scenario."""
     own, its = base.contact.snow, variant.contact.snow
     share = its.snow_hardness / own.snow_hardness

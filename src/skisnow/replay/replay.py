@@ -196,12 +196,12 @@ def groove_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tup
     >>> when.tolist(), ski.tolist()
     ([0.25, 1.0], [1, 0])
     """
-    passages = [_passage(middle, time, track[:, ski]) for ski in range(2)]
+    passages = [_passage_times(middle, time, track[:, ski]) for ski in range(2)]
     nearer = np.asarray(passages[1][1] < passages[0][1], dtype=np.int64)
     return np.where(nearer == 1, passages[1][0], passages[0][0]), nearer
 
 
-def _passage(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _passage_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Time (k,) at which a boot's track (n, 3) passes nearest to each piece of groove, and the distance (k,) (m)."""
     if len(time) < _NEIGHBOURS or not len(middle):
         return np.full(len(middle), time[0]), np.linalg.norm(middle - track[0], axis=1)

@@ -317,7 +317,7 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
     joints = dict(zip(JOINTS, np.moveaxis(skier.joints @ _TO_OPENSIM.T, 1, 0), strict=True))
     place = (replay.place + np.einsum("nab,nb->na", body, skier.joints[:, JOINTS.index("pelvis")])) @ _TO_OPENSIM.T
     turns = _TO_OPENSIM @ body @ _TO_OPENSIM.T
-    columns = dict(zip(("pelvis_tilt", "pelvis_list", "pelvis_rotation"), _cardan(turns), strict=True))
+    columns = dict(zip(("pelvis_tilt", "pelvis_list", "pelvis_rotation"), _cardan_angles(turns), strict=True))
     columns |= {f"pelvis_t{axis}": place[:, i] for i, axis in enumerate("xyz")}
     columns["lumbar_extension"] = np.full(len(place), -BENT / DEGREE)
     for k, (side, letter, sense) in enumerate((("left", "l", -1.0), ("right", "r", 1.0))):
@@ -326,8 +326,8 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
         axis = _unit_vectors(np.cross(shank, thigh))
         upper, lower = (np.stack([np.cross(up, axis), up, axis], axis=-1) for up in (thigh, shank))
         foot = _TO_OPENSIM @ rotation_of(boots.attitude[:, k]).as_matrix() @ _TO_OPENSIM.T
-        flexion, adduction, rotation = _cardan(upper)
-        dorsal, inversion, _ = _cardan(np.swapaxes(turns @ lower, 1, 2) @ foot)
+        flexion, adduction, rotation = _cardan_angles(upper)
+        dorsal, inversion, _ = _cardan_angles(np.swapaxes(turns @ lower, 1, 2) @ foot)
         bend = np.arctan2(np.linalg.norm(np.cross(shank, thigh), axis=1), _row_products(shank, thigh)[:, 0]) / DEGREE
         columns |= {
             f"hip_flexion_{letter}": flexion, f"hip_adduction_{letter}": sense * adduction,
@@ -337,6 +337,6 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
     return columns
 
 
-def _cardan(matrices: FloatArray) -> FloatArray:
+def _cardan_angles(matrices: FloatArray) -> FloatArray:
     """Angles (3, n) (degrees) of rotation matrices (n, 3, 3) about z, the rotated x and the rotated y."""
     return np.asarray(Rotation.from_matrix(matrices).as_euler("ZXY", degrees=True).T)

@@ -99,7 +99,12 @@ class LineChart(Element, component="line_chart.js"):
         for drawn, plain in self._drawn:
             if drawn == line:
                 return plain
-        plain = {"x": _short(line.x), "y": _short(line.y), "style": line.style, "points": line.points}
+        plain = {
+            "x": _round_to_pixels(line.x),
+            "y": _round_to_pixels(line.y),
+            "style": line.style,
+            "points": line.points,
+        }
         return plain | {"name": said(line.name, self.client)}
 
     def _chart_label(self, lines: Sequence[ChartLine]) -> str:
@@ -122,7 +127,7 @@ def save_buttons(name: str) -> None:
         button(words, None).on("click", js_handler=f"() => saveCharts('{name}.{kind}')")
 
 
-def _short(values: Sequence[float | None]) -> list[float | None]:
+def _round_to_pixels(values: Sequence[float | None]) -> list[float | None]:
     """Values rounded to a hundredth of a pixel, and None for NaN and infinity, to send fewer characters."""
     sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
     if not sizes or max(sizes) == 0.0:

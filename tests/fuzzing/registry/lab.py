@@ -148,7 +148,7 @@ _PLAN = {f"run/{_HIDDEN}/plan": b"summary.json\ntrack.csv\nfigures/a.svg", f"run
 READERS = (
     Reader(
         name="plan of a killed process", target=f"run/{_HIDDEN}/plan", files=lambda: _PLAN, mutations=TEXT,
-        read=lambda folder: prepare_folder(folder / "run"), covers=("_support.staging:_carry_out",),
+        read=lambda folder: prepare_folder(folder / "run"), covers=("_support.staging:_replace_files",),
     ),
     Reader(
         name="store.sqlite3", target="store.sqlite3", files=_store, read=_every_use, mutations=SQLITE,

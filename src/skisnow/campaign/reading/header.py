@@ -81,7 +81,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
     unknown = [name for name in present if name not in form.known]
     missing = [name for name in form.required if name not in present]
     if len(missing) == len(form.required):
-        return [_all_missing(form, header)]
+        return [_missing_columns_error(form, header)]
     repeated = [name for name, times in Counter(filter(None, header.columns)).items() if times > 1]
     allowed, action = Message("each column once"), Message("Rename or remove one of the columns of this name.")
     problems = [
@@ -113,7 +113,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
     return problems
 
 
-def _all_missing(form: TableForm, header: Header) -> Problem:
+def _missing_columns_error(form: TableForm, header: Header) -> Problem:
     """Error for a table without any required column; it proposes a mapping of the headings in campaign.toml."""
     meant = columns_by_synonym(form, header.columns)
     left = [name for name in form.required if name not in meant.values()]

@@ -342,11 +342,11 @@ def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLi
         if chosen:
             points = [(curve.depth_mm, curve.load_N) for curve in chosen]
             laws = [((*curve.law_depth_mm, None), (*curve.law_load_N, None)) for curve in chosen]
-            yield ChartLine(*_joined(points), style, points=True)
-            yield ChartLine(*_joined(laws), style)
+            yield ChartLine(*_join_curves(points), style, points=True)
+            yield ChartLine(*_join_curves(laws), style)
 
 
-def _joined(
+def _join_curves(
     pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]],
 ) -> tuple[list[float | None], list[float | None]]:
     """All x and all y of several curves (x, y), one curve after the other."""

@@ -53,7 +53,7 @@ def add_page(lab: Lab) -> None:
                 if added in {campaign.id for campaign in lab.store.list()}:
                     with ui.element("div").classes("acts"):
                         link(Message("Analysis of this campaign"), analysis("kept", added), "main")
-            _first_minute()
+            _add_introduction()
             is_first = not Journals(lab.store).list() and not lab.store.list()
             if is_first:
                 sentence(WHAT_THIS_IS)
@@ -66,7 +66,7 @@ def add_page(lab: Lab) -> None:
             _import_form(lab)
 
 
-def _first_minute() -> None:
+def _add_introduction() -> None:
     """Replay of a skier, and the three ways to begin."""
     words = escape(json.dumps(page_words(language_of()), ensure_ascii=False))
     ui.add_head_html(

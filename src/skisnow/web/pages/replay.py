@@ -73,12 +73,12 @@ def add_page(lab: Lab) -> None:
                     for file, words in files.items():
                         table = link(words, address(f"{TURNS}/{file}", track=name))
                         named(table, Message("{words}: {name}", words=words, name=name))
-                    _removal(tracks, name)
+                    _add_removal_button(tracks, name)
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))
 
 
-def _removal(tracks: TrackFolders, name: str) -> None:
+def _add_removal_button(tracks: TrackFolders, name: str) -> None:
     """Button that removes a track after a question of the browser."""
 
     def remove() -> None:
