@@ -159,6 +159,7 @@ class FileImports:
 
     @property
     def _templates(self) -> Path:
+        """Folder of the lab's templates for imports."""
         return self._lab.runs.parent / TEMPLATES
 
     def template_answers(self, id_: str) -> Answers:

@@ -101,6 +101,7 @@ def undo_import(folder: str | Path) -> list[str]:
 
 
 def _sha256(path: Path) -> str:
+    """SHA-256 of a file in hexadecimal; "" if it does not exist."""
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
 
 

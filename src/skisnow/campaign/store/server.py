@@ -138,6 +138,7 @@ def broken_references(connection: Connection) -> Iterator[tuple[str, str, int]]:
 
 
 def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
+    """SQLAlchemy engine of a PostgreSQL server, with time limits per connection; StoreError without its driver."""
     defaults = {name: value for name, value in _CONNECTION.items() if name not in address.url.query}
     try:
         engine = create_engine(address.url, connect_args=defaults, pool_pre_ping=True, hide_parameters=True)
@@ -203,6 +204,7 @@ def needs_migration(revision: str | None, place: object) -> bool:
 
 
 def _bring_up_to_date(engine: Engine, address: ServerAddress) -> None:
+    """Migrate the schema under the write lock, unless another program already did."""
     from .migrations import upgrade
 
     with engine.begin() as connection:
@@ -259,6 +261,7 @@ def store_place(place: Path | str | ServerAddress) -> StorePlace:
 
 
 def _server_url(text: str) -> URL:
+    """URL of a server's database; StoreError if the text is not an address or names no database."""
     try:
         url = make_url(text).set(drivername="postgresql+psycopg")
     except (ArgumentError, ValueError):  # their messages contain the address
@@ -275,4 +278,5 @@ def _server_url(text: str) -> URL:
 
 
 def _first_value(value: str | tuple[str, ...] | None) -> str:
+    """The text, or the first of several; "" without one."""
     return (value if isinstance(value, str) else value[0]) if value else ""

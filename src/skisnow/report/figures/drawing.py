@@ -185,6 +185,7 @@ def compact_svg(svg: str) -> str:
 
 
 def _round_length(match: re.Match[str]) -> str:
+    """Matched number rounded to `DIGITS` decimals, without zeros at its end."""
     text = f"{float(match[0]):.{DIGITS}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 

@@ -73,6 +73,7 @@ def _names_of_legends(figure: Figure) -> dict[tuple[str, str], str]:
 
 
 def _line_style(line: Line2D) -> tuple[str, str]:
+    """Colour as hexadecimal text, and marker of a line."""
     return to_hex(line.get_color()), str(line.get_marker())
 
 
@@ -103,6 +104,7 @@ def _points(artist: Artist, axes: Axes) -> FloatArray:
 
 
 def _coordinates(artist: Artist, axes: Axes) -> Iterator[object]:
+    """Coordinates (n, 2) of what an artist draws in units of the data; none for other artists."""
     if isinstance(artist, Line2D):
         if artist.get_transform() == axes.transData:  # not a line through the whole panel
             yield artist.get_xydata()
@@ -129,6 +131,7 @@ def _named_ticks(axis: Axis) -> dict[float, str]:
 
 
 def _value_texts(values: FloatArray, names: dict[float, str]) -> list[str]:
+    """Texts of values with seven digits, "" for NaN, or the name of the nearest tick if there are names."""
     if names:
         return [names[min(names, key=lambda tick: abs(tick - value))] for value in values.tolist()]
     return ["" if np.isnan(value) else f"{value:.7g}" for value in values.tolist()]

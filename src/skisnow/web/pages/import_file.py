@@ -238,6 +238,7 @@ class _ImportPage:
         await self.draw()
 
     def _save_template(self) -> None:
+        """Save the answers as a template under the typed name; rejects a proposal with open questions."""
         self.imports.save_template(str(self._name.value), self._ready_files())
         self._status.say(Message("Template saved for the next campaign: {name}", name=self._name.value))
 

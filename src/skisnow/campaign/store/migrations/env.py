@@ -8,6 +8,7 @@ from skisnow.campaign.store.schema import metadata
 
 
 def run() -> None:
+    """Run the migrations in one transaction of the connection that Alembic's configuration carries."""
     context.configure(connection=context.config.attributes["connection"], target_metadata=metadata)
     with context.begin_transaction():
         context.run_migrations()

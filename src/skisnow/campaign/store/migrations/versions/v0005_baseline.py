@@ -16,10 +16,12 @@ depends_on = None
 
 
 def upgrade() -> None:
+    """Do nothing: this revision is the schema that a new store has."""
     pass
 
 
 def downgrade() -> None:
+    """Remove all tables and, with SQLite, the application's number."""
     metadata.drop_all(op.get_bind())
     if op.get_bind().dialect.name == "sqlite":
         op.execute("PRAGMA application_id = 0")
