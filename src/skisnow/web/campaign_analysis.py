@@ -232,7 +232,7 @@ class AnalysisCache:
         return entry[1] if entry is not None and entry[0] == state else None
 
     async def subject(self, kind: str, id_: str) -> CampaignSource:
-        """Current state of a campaign, from the cache or read now; errors as in `cached`."""
+        """Current state of a campaign, from the cache or read now; StoreError if the store does not have it."""
         async with self._opening:
             if (cached := self.cached(kind, id_)) is not None:
                 self._subjects.move_to_end((kind, id_))

@@ -142,7 +142,7 @@ class TrackFolders:
 
 
 def check_track(place: Path, placing: Placing) -> Placing:
-    """Placing of a track, checked to be drawable, with `is_geodetic` set. Errors as in `TrackFolders.keep`."""
+    """Placing of a track with `is_geodetic` set; ParameterError if it is unreadable, too long or cannot be drawn."""
     track = _read_named(place, placing)
     _require_few_points(track)
     placing = replace(placing, is_geodetic=track.axes == "east_north_up")
@@ -152,7 +152,7 @@ def check_track(place: Path, placing: Placing) -> Placing:
 
 
 def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> ReplayTrack:
-    """Track in the axes of a slope with an angle (rad), None for a profile; errors as in `TrackFolders.keep`."""
+    """Track in the axes of a slope with an angle (rad; None for a profile); rejects one with too many points."""
     track = _to_slope_axes(_read_named(place, placing), placing, slope_angle=slope_angle)
     _require_few_points(track)
     return measured_track(track, starts_at=placing.starts_at_s)
@@ -281,5 +281,5 @@ class LabCourses:
 
 
 def gates_of(place: Path) -> int:
-    """Number of gates of a course; errors as in `skisnow.read_course`."""
+    """Number of gates of a course file; ParameterError if it is not a valid course."""
     return len(read_course(place).gates)

@@ -109,7 +109,7 @@ def saved_templates(folder: Path | None = None) -> dict[str, Path]:
 
 
 def _templates_folder(folder: Path | None) -> Path:
-    """The same folder; for None that of the user's own templates, in the user's data folder."""
+    """Folder of import templates: the given one, or for None that in the user's data folder."""
     from platformdirs import user_data_path
 
     return folder or user_data_path("skisnow") / TEMPLATES

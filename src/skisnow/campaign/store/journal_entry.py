@@ -81,7 +81,7 @@ def parse_entry(row: RowMapping) -> JournalEntry:
 
 
 def readable_entry(row: RowMapping) -> JournalEntry:
-    """Convert a row to an entry without verifying its checksum; errors as in `parse_entry`."""
+    """Entry of a row, without a check of its checksum; StoreError if a value has a wrong type."""
     values: dict[str, Any] = {name: row[name] for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     try:
         for name in ("action", "file", "test", "at", "who", "why", "uid"):

@@ -61,7 +61,7 @@ def campaign_rows(connection: Connection) -> dict[str, Row[tuple[object, ...]]]:
 
 
 def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
-    """Read the campaign whose SHA-256 has this beginning; errors as in `pick_id` and `stored_campaign`."""
+    """Campaign whose SHA-256 has this beginning; StoreError if none or several have it, or it is damaged."""
     rows = campaign_rows(connection)
     sha256 = pick_id(beginning, {sha256: row.name for sha256, row in rows.items()})
     return stored_campaign(connection, rows[sha256])

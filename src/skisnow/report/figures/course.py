@@ -141,7 +141,7 @@ def edge_angles(run: Run) -> FloatArray:
 
 
 def edge_angles_of_skis(run: Run) -> FloatArray:
-    """Edge angle of each ski as in `edge_angles`, shape (n, 2); (n, 1) if both have the same."""
+    """Edge angle of each ski (rad), positive with left edges down, (n, 2); (n, 1) if both are equal."""
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     if run.boots is not None:
         left = run.boots.axes[:, :, 1]

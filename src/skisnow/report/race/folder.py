@@ -143,7 +143,7 @@ def _time_texts(gap: GateGap) -> dict[str, str | None]:
 
 
 def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> str:
-    """Text of a race for a terminal: times, time gained, and the turns of the line; parameters as in `write_race`."""
+    """Text for the terminal: times, time gained, scores `checked` by other methods, and the turns of the line."""
     gates = len(result.line.turns)
     gained = "" if result.gained is None else f", {result.gained:.3f} s less than where the search began"
     lines = [f"{gates} gates in {_time_text(result.score)}{gained}; {len(result.history)} evaluations"]
