@@ -264,7 +264,7 @@ def test_json_is_utf_8_whatever_the_terminal(campaign: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
 def test_a_full_disk_behind_stdout_is_a_sentence() -> None:
     with Path("/dev/full").open("wb") as full:
-        done = run_program("schema", "scenario", stdout=full)
+        done = run_program("schema", "campaign", stdout=full)
     assert done.returncode == 1
     *before, last = done.stderr.decode("utf-8").splitlines()
     assert last.startswith("skisnow: No space")

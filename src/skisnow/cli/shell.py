@@ -184,7 +184,7 @@ def _text(text: str) -> str:
     return re.sub(r"^(?=[.'])", r"\\&", escaped)
 
 
-INPUT: Final = "scenario"
+INPUTS: Final = ("campaign", "scenario")
 OUTPUTS: Final = {
     "carve": "carving",
     "check": "campaign",
@@ -197,15 +197,15 @@ OUTPUTS: Final = {
 }
 """Package that has the schema of each output; the keys of inputs in it come from their declarations."""
 MOST_BYTES: Final = 1 << 20
-NAMES: Final = (INPUT, *OUTPUTS)
+NAMES: Final = (*INPUTS, *OUTPUTS)
 
 
 def add_schema(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add ``skisnow schema`` to the program."""
     parser = commands.add_parser(
         "schema",
-        help="the JSON Schema of a scenario, or of the JSON of a command",
-        description="Print a JSON Schema: of a parsed scenario, or of the JSON that a command writes.",
+        help="the JSON Schema of campaign.toml, of a scenario, or of the JSON of a command",
+        description="Print a JSON Schema: of a parsed campaign.toml or scenario, or of the JSON that a command writes.",
     )
     parser.add_argument("name", choices=NAMES, metavar="NAME", help=f"one of {', '.join(NAMES)}")
     parser.set_defaults(run=print_schema)
@@ -222,12 +222,13 @@ def print_schema(options: argparse.Namespace) -> int:
 def json_schema(name: str) -> Schema:
     """JSON Schema of an input or output of skisnow by its name, one of `NAMES`."""
     from .._support.user_files import read_json
+    from ..campaign.reading.campaign_file import campaign_schema
     from ..carving.question import CARVE_KEYS
     from ..parameters.json_schema import output_schema
     from ..scenario.schema import output_scenario_schema, scenario_schema
 
-    if name == INPUT:
-        return scenario_schema()
+    if name in INPUTS:
+        return campaign_schema() if name == "campaign" else scenario_schema()
     place = files("skisnow") / OUTPUTS[name] / "schemas" / f"{name}.schema.json"
     schema: Schema = read_json(Path(str(place)), most_bytes=MOST_BYTES)
     if name == "summary":

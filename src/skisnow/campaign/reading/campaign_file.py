@@ -1,4 +1,4 @@
-"""Reader of campaign.toml, its plates, tools and quality flags."""
+"""Reader of campaign.toml, its plates, tools and quality flags, and the JSON Schema of the file."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ..._support.user_files import ContentError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...parameters import Allowed, Quantity, own_quantities
+from ...parameters.json_schema import DRAFT, Schema, table_schema
 from ..problems import ALWAYS_EXCLUDE, QUALITY_FLAGS, Problem, error, warning
 from ..smet import WeatherSettings
 from ..snow_micro_pen import SnowMicroPenSettings
@@ -262,3 +263,69 @@ SHAPES: Final[Mapping[str, Shape]] = MappingProxyType(
     }
 )
 """Every shape by its name in campaign.toml."""
+
+
+_NAME: Final[Schema] = {"type": "string", "pattern": "\\S", "description": "Unique in its list."}
+
+
+def campaign_schema() -> Schema:
+    """JSON Schema of a parsed campaign.toml."""
+    words = "Codes of the quality flags that exclude an experiment; replaces the default."
+    exclude = {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
+    shapes = {name: table_schema(shape.lengths.values()) for name, shape in SHAPES.items()}
+    return {
+        "$schema": DRAFT,
+        "$id": "urn:skisnow:schema:campaign:1",
+        "title": "campaign.toml of a skisnow campaign, parsed",
+        "description": "Units are part of the keys. Keys that are not listed here are ignored with a warning; keys "
+        "that are nearly one of these are refused as misspelt.",
+        "type": "object",
+        "properties": {
+            **table_schema(CAMPAIGN_KEYS.values())["properties"],
+            "observers": {"description": "who", **_one_or_several({"type": "string"})},
+            "tool": {"type": "array", "items": {"$ref": "#/$defs/tool"}},
+            "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
+            "columns": _by_heading("Column of the numbers or texts below a heading"),
+            "units": _by_heading("Unit of the numbers below a heading that names none"),
+            "import": {"type": "object", "description": "File, answers and notes of skisnow import."},
+            "snow_micro_pen": {
+                "description": "How the recordings that snow_micro_pen.csv names are evaluated.",
+                **table_schema(own_quantities(SnowMicroPenSettings)),
+            },
+            "weather": {
+                "description": "Readings of a weather station, in SMET.",
+                **table_schema(own_quantities(WeatherSettings)),
+            },
+            "screening": {"type": "object", "properties": {"exclude": exclude}},
+        },
+        "$defs": {
+            "mark": {"enum": list(QUALITY_FLAGS)},
+            "tool": {
+                "type": "object",
+                "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
+                "required": ["name", "shape"],
+                "oneOf": [
+                    {"properties": {"shape": {"const": name}, **keys["properties"]}, "required": keys["required"]}
+                    for name, keys in shapes.items()
+                ],
+            },
+            "plate": {
+                "type": "object",
+                "properties": {"name": _NAME, **table_schema([_PLATE_LENGTH])["properties"]},
+                "required": ["name", "length_mm"],
+            },
+        },
+    }
+
+
+def _one_or_several(item: Schema) -> Schema:
+    """Schema of one item or a list of them."""
+    return {"anyOf": [item, {"type": "array", "items": item}]}
+
+
+def _by_heading(words: str) -> Schema:
+    """Schema of a mapping from headings to texts, for all tables or nested for one table; ``words`` describe it."""
+    pairs = {"type": "object", "additionalProperties": {"type": "string"}}
+    either: Schema = {"anyOf": [{"type": "string"}, pairs]}
+    words = f"{words}; in a table of a table's name, such as penetration, for that one."
+    return {"description": words, "type": "object", "additionalProperties": either}
