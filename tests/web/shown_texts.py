@@ -42,7 +42,7 @@ NO_WORDS: Final = frozenset(
         "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox",
         "beside above",  # classes of the stylesheet
         "card ask",
-        'multiple accept=".toml,.csv,.json"',
+        'multiple accept=".toml,.csv"',
         "main then",
         "quiet progress",
         "quiet range",
