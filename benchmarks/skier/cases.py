@@ -175,7 +175,7 @@ HYBRID: Final = (
     Hybrid("one turn, 13 m, 19°", 19, 13.0, 3.0, 7.0, gates=2, duration=2.6, keys=_CLOSE),
     Hybrid("one turn, giant slalom 25 m, 15°", 15, 25.0, 6.0, 11.0, gates=2, duration=3.6, ski="giant-slalom"),
     Hybrid("20 gates, 16 m, 10°", 10, 16.0, 4.5, 6.0, keys=(("greatest_slip_deg", 38.0),)),
-    Hybrid("20 gates, 18 m, 15°", 15, 18.0, 6.0, 7.0, keys=(("greatest_slip_deg", 45.0), ("least_slip_deg", 28.0))),
+    Hybrid("20 gates, 26 m, 15°", 15, 26.0, 18.0, 7.0, keys=(("greatest_slip_deg", 50.0), ("least_slip_deg", 28.0))),
 )
 """Turns that carve behind the fall line, on the race piste. Runs of one turn last up to behind the edge
 change."""

@@ -15,14 +15,14 @@ from .seen import Seen
 
 FADES_FROM, FADES_TO = math.radians(20.0), math.radians(5.0)
 """Courses before the fall line between which the slip of the skid fades to 0 (found by trial)."""
-CARVES_TO: Final = math.radians(20.0)
-"""Course behind the fall line up to which a turn is carved (found by trial: with 12 and 26° more skiers fall)."""
+CARVES_TO: Final = 0.7
+"""Course behind the fall line up to which a turn is carved, over the greatest course of the line (found by trial)."""
 BLADE: Final = math.radians(3.0)
 """Slip below which a carve begins (measured: a ski follows its edge below 1 to 3°)."""
 BEGINS: Final = math.radians(6.0)
 """Course before the fall line from which a carve can begin (modelling assumption)."""
 BEGINS_BEFORE: Final = 0.8
-"""Share of `CARVES_TO` up to which a carve can begin (modelling assumption)."""
+"""Course up to which a carve can begin, over the one up to which it lasts (modelling assumption)."""
 LEAST_FORCE: Final = 1.0
 """Planned force over mass (m/s²) from which a turn can be carved (modelling assumption)."""
 BLEND: Final = 3
@@ -41,13 +41,14 @@ class CarvedLine(RecedingLine):
     radius: of the ski's sidecut (m).
 
     The slip fades before the fall line while the edges are still flat. Below 3° of slip the skis follow their edges,
-    which then take the lean of the body. From the course `CARVES_TO` on the skier changes edges, without slip to the
-    old side, and skids into the next turn. Source: the page docs/methods/skier.md.
+    which then take the lean of the body. From 0.7 of the greatest course of the line on the skier changes edges,
+    without slip to the old side, and skids into the next turn. Source: the page docs/methods/skier.md.
     """
 
     def __init__(self, line: Line, apexes: Sequence[tuple[float, float]], radius: float) -> None:
         super().__init__(line, apexes)
         self._sidecut, self._share = radius, 1.0  # radius of a carve over the one in balance
+        self._until = CARVES_TO * max(map(abs, self._course))  # course (rad) up to which a carve lasts
         self._side = 0.0  # of the carve: 1 to the left, -1 to the right, 0 for none
         self._left = 0.0  # side of the turn whose carve has ended
 
@@ -64,15 +65,15 @@ class CarvedLine(RecedingLine):
         return self._carved(planned, seen, gravity)
 
     def _begin_or_end(self, seen: Seen, force: FloatArray) -> None:
-        """A carve begins at the fall line once the skis hardly slip, and ends at `CARVES_TO`."""
+        """A carve begins at the fall line once the skis hardly slip, and ends where its course is reached."""
         if self._left * force[0] <= 0.0:
             self._left = 0.0
-        if self._side and self._side * seen.course > CARVES_TO:
+        if self._side and self._side * seen.course > self._until:
             self._side, self._left = 0.0, self._side
         if self._side or self._left or abs(seen.slip) > BLADE or abs(force[0]) < LEAST_FORCE:
             return
         side = _side_of(force)
-        if -BEGINS < side * seen.course < BEGINS_BEFORE * CARVES_TO:
+        if -BEGINS < side * seen.course < BEGINS_BEFORE * self._until:
             self._side = side
 
     def _radius(self, speed: float, gravity: Gravity) -> float:
@@ -93,7 +94,7 @@ class CarvedLine(RecedingLine):
         return self._side / radius * (1.0 + slope**2) ** 1.5
 
     def _carved(self, planned: Planned, seen: Seen, gravity: Gravity) -> Planned:
-        """The plan with the force and the course of a carve from the fall line to `CARVES_TO`."""
+        """The plan with the force and the course of a carve from the fall line to its end."""
         force, course = planned.force.copy(), planned.course.copy()
         side, speed = self._side or _side_of(force), max(seen.speed, SLOWEST)
         radius = self._radius(speed, gravity)
@@ -105,7 +106,7 @@ class CarvedLine(RecedingLine):
         first = 0 if self._side else int(begins[0]) if len(begins) else len(AHEAD)
         at = seen.course if self._side or first == len(AHEAD) else float(course[first])
         i = first
-        while i < len(AHEAD) and side * at <= CARVES_TO:
+        while i < len(AHEAD) and side * at <= self._until:
             carved = side * speed**2 / radius + gravity.down * math.sin(at)
             weight = 1.0 if self._side else min(1.0, (i - first + 1) / BLEND)
             force[i] += weight * (carved - force[i])
