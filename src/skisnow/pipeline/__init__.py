@@ -115,7 +115,7 @@ def turn(
     _require_inputs(unloading_ratio, shear_displacement, runs)
     workers = worker_count(workers)
     say = progress or (lambda *_: None)
-    analysis = campaign if isinstance(campaign, Analysis) else _analyse_site(campaign, site, progress)
+    analysis = campaign if isinstance(campaign, Analysis) else _analyse_with_site_checked(campaign, site, progress)
     snow = analysis.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
         snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
@@ -149,10 +149,10 @@ def turn(
     )
 
 
-def _analyse_site(
+def _analyse_with_site_checked(
     campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None
 ) -> Analysis:
-    """Read and analyse a campaign; a site without penetration tests is an error before the long estimates."""
+    """Read and analyse all sites of a campaign; `site` must have penetration tests, checked before the estimates."""
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     pressed = set(read.penetration.site) if read.penetration is not None else set()
     if site is not None and pressed and site_of_campaign(read, site) not in pressed:

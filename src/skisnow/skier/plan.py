@@ -54,9 +54,9 @@ class Gravity:
 class Planned:
     """Force to the left over mass (m/s²) and course (rad) at the moments `AHEAD`.
 
-    `heading` of the skis (rad), if the plan states it; otherwise it follows from the slip. `slides`: planned slip over
-    the one that brakes. `carves`: acceleration (m/s²) of the
-    widest carve now; 0: the skis do not carve.
+    `heading` of the skis (rad), if the plan states it; otherwise it follows from the slip. `stands`: the skier has
+    stopped and stands still. `slides`: factor on the slip that braking needs; 0: none. `carves`: acceleration (m/s²) of
+    the widest carve now; 0: the skis do not carve.
     """
 
     force: FloatArray

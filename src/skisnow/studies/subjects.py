@@ -200,7 +200,7 @@ class ScenarioModel(_PointModel):
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
     def _defaults(self) -> dict[str, Any]:
-        """Values of the scenario."""
+        """Values of the inputs that a point does not have: the scenario's own, otherwise the key's default."""
         return {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()}
 
 

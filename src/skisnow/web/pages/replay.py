@@ -97,7 +97,7 @@ def _add_removal_button(tracks: TrackFolders, name: str) -> None:
 
 
 def _add_run(place: Path, name: str, title: str) -> None:
-    """Add the card of a run with the link to its replay."""
+    """Add to the page the card of a run, with extent and outcome from its folder `place` and a link to its replay."""
     with ui.element("section").classes("card"):
         heading(title, 2)
         sentence(_in_words(place), "quiet")
