@@ -20,7 +20,7 @@ BLOCK = re.compile(
     r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>[^\n`]*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 MARK = re.compile(r"<!-- (?P<kind>not run|needs): (?P<reason>[\w ]+) -->")
-REASONS = {"package index", "other checks", "data of others"}
+REASONS = {"package index", "server", "other checks", "data of others"}
 PACKAGES = {"fmpy", "mujoco", "exudyn"}
 """Reasons of a mark, and packages without which a block cannot be run."""
 

@@ -122,7 +122,7 @@ def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.
             shortened.append(values)
         return list(values)
 
-    monkeypatch.setattr("skisnow.web.widgets._short", short)
+    monkeypatch.setattr("skisnow.web.widgets._round_to_pixels", short)
     desk.do(lambda: chart.show(own))
     again = chart.props["panel"]["lines"]
     assert shortened == [[0.0], [0.0]]  # earlier values are not rounded again
