@@ -178,7 +178,7 @@ class _Branch(NamedTuple):
 
 
 def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[FloatArray, ...]:
-    """Of each series s, its error, half 95 % interval, s of a gauge step; of each group r and degrees of freedom."""
+    """For each series s, its error, half 95 % interval, s of a gauge step; for each group r and degrees of freedom."""
     series, group = branch.series, model.group[chosen]
     law = _linearise_unloading(
         branch, np.minimum(model.offset[chosen], _LARGEST_SHARE * branch.penetration_depth[branch.largest]), model

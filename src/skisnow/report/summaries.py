@@ -154,7 +154,7 @@ def _carve_table(answers: list[Json]) -> Iterator[str]:
 
 
 def _difference(first: str | float | None, other: str | float | None) -> str:
-    """Text of the difference of a value from that of the first ski in %; "" if one is no number or nearly 0."""
+    """Text of the difference of a value from the first ski in %; "" if one is missing or the first near 0."""
     if not isinstance(first, float) or not isinstance(other, float) or abs(first) < _NOTHING:
         return ""
     percent = 100.0 * (other / first - 1.0)

@@ -374,7 +374,7 @@ def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
 
 
 def _named_value(text: str) -> tuple[str, str]:
-    """Split a text such as "Versuch 1" or "Kantwinkel: 30°" into heading and value; heading "" if it is no column."""
+    """Split a text such as "Versuch 1" or "Kantwinkel: 30°" into heading and value; "" for an unknown heading."""
     ends = [match for match in re.finditer(r"[\s:=]+(?=\S)", text) if not re.search(r"\d", text[: match.start()])]
     return next(
         ((text[: end.start()], text[end.end() :]) for end in ends[::-1] if _stated_columns(text[: end.start()])),

@@ -115,7 +115,7 @@ class Conflict:
         return self._lines(self.entries_there, self.uid_there)
 
     def _lines(self, entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> list[str]:
-        """One line per entry: who, when, and what was done."""
+        """One line per entry with its author, time and action."""
         by_uid = {entry.uid: entry for entry in (*self.common, *self.entries)}
         subjects = [(entry, by_uid.get(uids.get(entry.about or 0, ""))) for entry in entries]
         return [f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}" for entry, about in subjects]

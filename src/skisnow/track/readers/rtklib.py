@@ -146,7 +146,7 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
 
 
 def _parse_moment(cells: list[str], scale: str) -> datetime | None:
-    """Time in the first two cells, as date and time or as GPS week and second; None if they are no time."""
+    """Time in the first two cells, as date and time or as GPS week and second; None if they hold another text."""
     if len(cells) < 2:
         return None
     try:
