@@ -17,7 +17,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, identify, intervals
 from skisnow.identification.intervals import _resample, add_bootstrap_intervals
 from skisnow.identification.parameter import Parameter
-from skisnow.identification.problem import Fit, Kind, Values, unweighted_problem
+from skisnow.identification.problem import Fit, Kind, Problem, Values
 from skisnow.identification.solution import BootstrapBy, SearchRequest, build_identification
 from skisnow.identification.solving import Solver
 from tests.coded import raises
@@ -58,7 +58,7 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     parameters = tuple(Parameter(key=key, name=key, start=1.0, lower=0.01, upper=20.0, size=1.0) for key in ("a", "b"))
     rng = np.random.default_rng(3)
     plan = SearchRequest(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, progress=lambda _: None)
-    solution = Solver(unweighted_problem(parameters, (decay,)), plan).solution()
+    solution = Solver(Problem(parameters, (decay,), noise=(1.0,)), plan).solution()
     plan = replace(plan, bootstrap=80, bootstrap_by=by, rng=np.random.default_rng(4))
     return decay, add_bootstrap_intervals(build_identification(solution, plan), solution, plan)
 

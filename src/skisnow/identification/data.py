@@ -49,7 +49,8 @@ def read_data(path: str | Path) -> Data:
         raise ParameterError("{path} cannot be read: the file does not exist. Check the path").tag("no_file", path=path)
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
-        if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
+        is_track = bool(head & set(TIMES)) and any(set(place[:2]) <= head for place in (LOCAL, GEODETIC))
+        if set(CELL_COLUMNS) <= head or ("station_m" in head and not is_track):
             _reject_misspelt(path, head)
             return read_photo_cells(path)
     from ..track.read import read_track
@@ -67,11 +68,6 @@ def _reject_misspelt(path: Path, head: set[str]) -> None:
                 "{path}: unknown column {column}. Did you mean {similar}? Rename it, or give it a different name if it "
                 "is not to be read"
             ).tag("misspelled_column", path=path, column=name, similar=similar[0])
-
-
-def _is_track(head: set[str]) -> bool:
-    """True if a header has a time and the columns of a place, local or geodetic."""
-    return bool(head & set(TIMES)) and any(set(place[:2]) <= head for place in (LOCAL, GEODETIC))
 
 
 def data_description(data: Data) -> str:
@@ -159,8 +155,7 @@ def collect_data(
         if isinstance(file, PhotoCells)
     )
     runs = [track.name for track in tracks] + [run.name for file in cells for run in file.runs]
-    starts = _run_starts(scenario_input.identify.get("runs", {}), runs)
-    _require_not_free(starts, keys)
+    starts = _run_starts(scenario_input.identify.get("runs", {}), runs, keys)
     own = {key.partition("@")[0] for key in keys}
     start_is_free = {"start.x_m", "start.y_m"} <= own
     begins = [{**scenario.values, **starts.get(track.name, {})} for track in tracks]
@@ -222,8 +217,13 @@ def _require_different(paths: Sequence[str | Path]) -> None:
         seen[content] = path
 
 
-def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Values of single runs by full key; tables and keys were checked when the scenario was read."""
+def _run_starts(
+    table: Mapping[str, Mapping[str, object]], runs: Sequence[str], free: Sequence[str]
+) -> dict[str, dict[str, Any]]:
+    """Values of single runs by full key; rejects an unknown run, and a key that is free with one value for all runs.
+
+    Tables and keys were checked when the scenario was read.
+    """
     starts: dict[str, dict[str, Any]] = {}
     for run, entries in table.items():
         if run not in runs:
@@ -232,18 +232,13 @@ def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) 
             )
         keys = {free_key(word): value for word, value in entries.items()}
         starts[run] = {key: SCENARIO_KEYS[key].in_range(value) for key, value in keys.items()}
-    return starts
-
-
-def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str]) -> None:
-    """Reject a value for a single run if the same key is free with one value for all runs."""
-    for run, values in own.items():
-        for key in values:
-            if key in keys and not key.startswith(START):
+        for key in keys:
+            if key in free and not key.startswith(START):
                 raise ParameterError(
                     '[identify.runs."{run}"] states {key}, but one value of {key} is free for all runs. Free '
                     "{key}@{each} instead, or remove it from the table"
                 ).tag("value_of_free_key", run=run, key=key, each=EACH)
+    return starts
 
 
 FARTHEST: Final = 50_000.0

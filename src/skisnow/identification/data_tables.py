@@ -16,12 +16,7 @@ from .._support.units import ShownFields
 from ..parameters import Quantity
 
 _ACTION: Final = Message("Write finite numbers without their units, with one decimal mark in all of the file.")
-_MEASURED: Final = {
-    "station": Message("station"),
-    "time": Message("time"),
-}
-
-
+_MEASURED: Final = {"station": Message("station"), "time": Message("time")}
 _PASSAGE: Final = (
     Quantity("station_m", "distance from the start down, which no cell lies before"),
     Quantity("time_s", "of the passage"),
@@ -29,14 +24,6 @@ _PASSAGE: Final = (
 )
 CELL_COLUMNS: Final = ("run", "station_m", "time_s")
 CELL_SPREAD: Final = "time_sd_s"
-
-
-def _read_rows(path: Path, columns: tuple[str, ...], further: tuple[str, ...]) -> list[CsvRow]:
-    """Rows of a table with required and `further` optional columns; rejects a table without rows."""
-    rows = list(csv_rows(path, columns, further=further, action=_ACTION))
-    if not rows:
-        raise ParameterError("{name} has no rows below its header").tag("no_rows", name=path)
-    return rows
 
 
 def _column(rows: list[CsvRow], quantity: Quantity) -> FloatArray:
@@ -101,7 +88,9 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
     Raises ParameterError: the file cannot be read, a column is missing, a cell is not a number (row and column are
         named), distances or times do not rise, or only some rows of a run state a standard deviation.
     """
-    table = _read_rows(Path(path), CELL_COLUMNS, (CELL_SPREAD,))
+    table = list(csv_rows(Path(path), CELL_COLUMNS, further=(CELL_SPREAD,), action=_ACTION))
+    if not table:
+        raise ParameterError("{name} has no rows below its header").tag("no_rows", name=path)
     station, time, spread = (_column(table, quantity) for quantity in _PASSAGE)
     for row in table:
         if not row.cells["run"]:

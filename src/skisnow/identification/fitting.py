@@ -16,16 +16,16 @@ from .._support.messages import Message
 from .._support.processes.batch import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, forget
 from ..parameters import values_of
-from ..scenario import Scenario, ScenarioFile
+from ..scenario import Scenario
 from ..scenario.identify_section import given_parameters
 from ..scenario.keys import free_keys
 from ..scenario.reading import build_input, load_input
 from ..scenario.resolution import ScenarioInput
-from .data import Data, IdentificationData, collect_data, fingerprint, start_values
+from .data import Data, collect_data, fingerprint, start_values
 from .intervals import require_bootstrap
 from .parameter import parameter_table
 from .photo_cell_times import PhotoCellTimes
-from .problem import Kind, Observations, expand_keys, unweighted_problem
+from .problem import Kind, Observations, Problem, expand_keys
 from .result import Identification
 from .simulations import RunSimulation, Simulations
 from .solution import BootstrapBy, SearchRequest, too_few_points
@@ -149,7 +149,12 @@ def identify(
     rows = KeptRows.opened(checkpoint, identity) if checkpoint else KeptRows()
     counted = _ProgressCounter(progress or (lambda *_: None))
     with Simulations(simulate, rows, workers, counted, executor) as simulations:
-        observations = _make_observations(scenario_file, measurements, simulations, clock_is_free=clock_is_free)
+        observations: list[Observations] = []
+        if measurements.tracks:
+            values, own = values_of(scenario_file.scenario), measurements.starts
+            observations.append(TrackPositions(measurements.tracks, simulations, measurements.fixed, own, values))
+        for cells in measurements.cells:
+            observations.append(PhotoCellTimes(cells, scenario_file, measurements.starts, clock_is_free))
         _require_used(keys, observations)
         request = SearchRequest(
             title=scenario_input.title,
@@ -163,7 +168,7 @@ def identify(
             warnings=(*measurements.warnings, *([unused] if fixed else [])),
             methods=measurements.methods,
         )
-        problem = unweighted_problem(parameters, observations)
+        problem = Problem(parameters, tuple(observations), noise=(1.0,) * len(observations))
         needed = len(parameters) + problem.nuisances + (not problem.accuracy_is_stated)
         if not problem.priors and problem.points < needed:
             result = too_few_points(problem, request)
@@ -179,19 +184,6 @@ def identify(
                 wall_s=time.monotonic() - begun,
             ),
         )
-
-
-def _make_observations(
-    scenario: ScenarioFile, read: IdentificationData, simulations: Simulations, *, clock_is_free: bool
-) -> tuple[Observations, ...]:
-    """Tracks (all together, first) and photo-cell runs to compare with simulations."""
-    observations: list[Observations] = [
-        PhotoCellTimes(cell, scenario, read.starts, clock_is_free) for cell in read.cells
-    ]
-    if read.tracks:
-        tracks = TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(scenario.scenario))
-        observations.insert(0, tracks)
-    return tuple(observations)
 
 
 _KINDS: Final[dict[Kind, Message]] = {

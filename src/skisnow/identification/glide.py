@@ -84,7 +84,11 @@ def slope_line(slope: Slope, start: float) -> SlopeLine:
     x = np.concatenate([[start], middle[ahead], slope.x[-1:]])
     gradient = np.concatenate([np.interp([start], middle, of_segment), of_segment[ahead], of_segment[-1:]])
     line = SlopeLine(np.zeros(len(x)), x, np.stack([gradient[:-1], np.diff(gradient) / np.diff(x)]))
-    return replace(line, arc_length=np.concatenate([[0.0], np.cumsum(_lengths(line))]))
+    place, weight = np.polynomial.legendre.leggauss(10)  # Gauss's rule for the lengths of the pieces
+    centre, half = 0.5 * (x[1:] + x[:-1]), 0.5 * np.diff(x)
+    stretch = [1.0 / line.at(np.arange(len(centre)), centre + half * share)[1] for share in place]
+    lengths = half * np.tensordot(weight, stretch, axes=1)
+    return replace(line, arc_length=np.concatenate([[0.0], np.cumsum(lengths)]))
 
 
 def planes(angle: FloatArray) -> SlopeLine:
@@ -92,15 +96,6 @@ def planes(angle: FloatArray) -> SlopeLine:
     ends = np.array([0.0, math.inf])
     zero = np.zeros_like(angle)
     return SlopeLine(ends, ends, np.stack([-np.tan(angle), zero]))
-
-
-def _lengths(line: SlopeLine) -> FloatArray:
-    """Lengths (m) of the pieces, by Gauss's rule with ten points."""
-    place, weight = np.polynomial.legendre.leggauss(10)
-    middle, half = 0.5 * (line.x[1:] + line.x[:-1]), 0.5 * np.diff(line.x)
-    number = np.arange(len(middle))
-    stretch = [1.0 / line.at(number, middle + half * share)[1] for share in place]
-    return np.asarray(half * np.tensordot(weight, stretch, axes=1))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -71,30 +71,23 @@ def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatA
     ends = np.unique(np.clip(centre[j] + error * np.array(PLACES), lower[j], upper[j]))
     ends = ends[np.abs(ends - centre[j]) > 1e-9]
     compute = best_fit_residuals(solution)
-    points = [_moved(solution, j, float(end)) for end in ends]
+    assert optimum.jacobian is not None
+    points = []
+    for end in ends:  # the others begin at the minimum of the linearised model
+        place = centre.copy()
+        place[j] = end
+        residuals = optimum.residuals + optimum.jacobian[:, j] * (float(end) - centre[j])
+        points.append(_step_of_others(solution, j, place, residuals))
     costs = np.full(len(ends), np.inf)
-    for _ in range(REFITS):
+    for _ in range(REFITS + 1):  # the step after the last residuals does not count
         for i, residuals in enumerate(compute(points)):
             if residuals is not None:
                 costs[i] = min(costs[i], float(residuals @ residuals))
                 points[i] = _step_of_others(solution, j, points[i], residuals)
-    for i, residuals in enumerate(compute(points)):
-        if residuals is not None:
-            costs[i] = min(costs[i], float(residuals @ residuals))
     places = np.concatenate([ends, [centre[j]]])
     rise = np.concatenate([costs - optimum.cost, [0.0]])
     order = np.argsort(places)
     return places[order], rise[order]
-
-
-def _moved(solution: Solution, j: int, end: float) -> FloatArray:
-    """Place with parameter j at `end` and the others at the minimum of the linearised model."""
-    optimum = solution.optimum
-    assert optimum.jacobian is not None
-    place = optimum.place.copy()
-    place[j] = end
-    residuals = optimum.residuals + optimum.jacobian[:, j] * (end - optimum.place[j])
-    return _step_of_others(solution, j, place, residuals)
 
 
 def _step_of_others(solution: Solution, j: int, place: FloatArray, residuals: FloatArray) -> FloatArray:

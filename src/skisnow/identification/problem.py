@@ -64,8 +64,8 @@ class Problem:
         final: True for the scenario's solver, at the accuracy of the result.
         """
         many = [self.values(place) for place in places]
-        parts = [observation.residuals(many, final=final) for observation in self.observations]
-        return [self._weighted_residuals([part[i] for part in parts], many[i]) for i in range(len(many))]
+        parts = zip(*(observation.residuals(many, final=final) for observation in self.observations), strict=True)
+        return [self._weighted_residuals(part, values) for part, values in zip(parts, many, strict=True)]
 
     def values(self, place: FloatArray) -> dict[str, float]:
         """Parameters by key at a place of the search, shape (p,)."""
@@ -100,11 +100,6 @@ class Problem:
         priors = [parameter.prior_residual(values[parameter.key]) for parameter in self.parameters]
         pieces.append(np.array([prior for prior in priors if prior is not None], dtype=float))
         return np.concatenate(pieces)
-
-
-def unweighted_problem(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...]) -> Problem:
-    """A problem before the estimate of its noise."""
-    return Problem(parameters, observations, tuple(1.0 for _ in observations))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)

@@ -100,9 +100,10 @@ def build_identification(solution: Solution, plan: SearchRequest) -> Identificat
     problem, optimum = solution.problem, solution.optimum
     values = problem.values(optimum.place)
     uncertainty = solution.uncertainty()
-    interrupted = optimum.state == "interrupted"
-    observed = () if interrupted else problem.observations
-    outcome = _outcome_of(optimum, uncertainty)
+    outcome: Outcome = optimum.state
+    if outcome != "interrupted" and uncertainty is not None and uncertainty.unknown.any():
+        outcome = "not_identifiable"
+    observed = () if outcome == "interrupted" else problem.observations
     p = len(problem.parameters)
     slope = np.array([parameter.slope(values[parameter.key]) for parameter in problem.parameters])
     with np.errstate(invalid="ignore"):
@@ -154,15 +155,6 @@ def too_few_points(problem: Problem, plan: SearchRequest) -> Identification:
         degrees_of_freedom=problem.points - p - problem.nuisances,
         warnings=(*plan.warnings, warning),
     )
-
-
-def _outcome_of(state: SearchState, spread: Uncertainty | None) -> Outcome:
-    """Outcome of a search: interrupted, not_identifiable (if a parameter is unknown), or the search's own state."""
-    if state.state == "interrupted":
-        return "interrupted"
-    if spread is not None and spread.unknown.any():
-        return "not_identifiable"
-    return state.state
 
 
 def _identified_parameters(solution: Solution, spread: Uncertainty | None) -> Iterator[Identified]:

@@ -136,19 +136,10 @@ def linear_uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None
     single_errors = np.where(length > 0.0, 1.0 / unit, np.inf)
     with np.errstate(invalid="ignore"):
         unknown = lost | (factor * np.sqrt(np.diag(covariance)) > WIDEST_HALF_INTERVAL)
-    return Uncertainty(
-        covariance, correlation, factor, unknown, _undetermined_groups(open_directions, length), single_errors
-    )
-
-
-def _undetermined_groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...], ...]:
-    """Parameters that the data do not determine: those without effect, and those of each undetermined direction."""
     alone = [(int(j),) for j in np.flatnonzero(length == 0.0)]
-    together = [
-        tuple(int(j) for j in np.flatnonzero((np.abs(direction) > LEAST_SHARE) & (length > 0.0)))
-        for direction in directions
-    ]
-    return tuple(dict.fromkeys([*alone, *(group for group in together if group)]))
+    together = (np.flatnonzero((np.abs(direction) > LEAST_SHARE) & (length > 0.0)) for direction in open_directions)
+    groups = tuple(dict.fromkeys([*alone, *(tuple(group.tolist()) for group in together if group.size)]))
+    return Uncertainty(covariance, correlation, factor, unknown, groups, single_errors)
 
 
 def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[str]:
@@ -157,15 +148,11 @@ def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArra
         for j in range(i):
             r = float(correlation[i, j])
             if abs(r) > REPORTED_PAIR_CORRELATION:
-                yield (
-                    Message(
-                        "{name} and {name_2} are hardly told apart (correlation {r:.3f}): {pair_help}",
-                        name=parameters[j].name,
-                        name_2=one.name,
-                        r=r,
-                        pair_help=_pair_help(parameters[j], one),
-                    )
-                )
+                helps = _pair_help(parameters[j], one)
+                yield Message(
+                    "{name} and {name_2} are hardly told apart (correlation {r:.3f}): {pair_help}",
+                    name=parameters[j].name, name_2=one.name, r=r, pair_help=helps,
+                )  # fmt: skip
 
 
 def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> Iterator[str]:
@@ -185,22 +172,19 @@ def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> It
             helps = _pair_help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
             yield Message("{names} cannot be distinguished by these data: {helps}", names=names, helps=helps)
     for j in np.flatnonzero(spread.unknown).tolist():
-        if j not in named:
-            yield (
-                f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
-                f"have. {_why_open(parameters, spread, j)}"
-            )
-
-
-def _why_open(parameters: Sequence[Parameter], spread: Uncertainty, j: int) -> str:
-    """Reason why parameter j is not determined, and a remedy."""
-    if spread.factor * spread.alone[j] > WIDEST_HALF_INTERVAL:  # not even with all others known
-        return _single_help(parameters[j])
-    close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > REPORTED_PAIR_CORRELATION]
-    if not close:
-        return "It would be known if the others were: fix some of them, or give them priors from elsewhere"
-    names = " and ".join(parameters[i].name for i in close)
-    return f"It would be known if {names} were: what one does the other can do"
+        if j in named:
+            continue
+        close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > REPORTED_PAIR_CORRELATION]
+        names = " and ".join(parameters[i].name for i in close)
+        reason = "It would be known if the others were: fix some of them, or give them priors from elsewhere"
+        if spread.factor * spread.alone[j] > WIDEST_HALF_INTERVAL:  # not even with all others known
+            reason = _single_help(parameters[j])
+        elif close:
+            reason = f"It would be known if {names} were: what one does the other can do"
+        yield (
+            f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could have. "
+            f"{reason}"
+        )
 
 
 def _pair_help(one: Parameter, other: Parameter) -> str:

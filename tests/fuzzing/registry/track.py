@@ -66,7 +66,7 @@ def _read_line(folder: Path) -> object:
     return read_line(folder / "line.csv", read_course(folder / "course.csv"), (0.0, 0.0))
 
 
-_DATA = ("identification.data:_head", "identification.data_tables:_read_rows")
+_DATA = ("identification.data:_head", "identification.data_tables:read_photo_cells")
 READERS = (
     *map(_track, FILES),
     single_file("photo cells", _CELLS, read_data, TABLE, *_DATA, target="cells.csv"),
