@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Final, Literal
 
 import numpy as np
@@ -98,7 +98,8 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     rises = np.where(np.diff(segments(track)) > 0, 0.0, np.diff(smooth))  # nothing between two segments of the file
     climbs = [_climb(smooth, low, high) for low, high in ascents if np.sum(rises[low:high]) >= LEAST_HEIGHT]
     lifts = [_make_stretch(track, motion, height, *climb) for climb in climbs]
-    spans = (_descent(motion, smooth, corners, area) for area in _areas_between(ascents, len(track)))
+    edges = [0, *chain.from_iterable(ascents), len(track) - 1]  # of the areas before, between and after the ascents
+    spans = (_descent(motion, smooth, corners, area) for area in zip(edges[::2], edges[1::2], strict=True))
     runs = [_make_stretch(track, motion, height, *ends) for ends in spans if ends is not None]
     # a run is longer than its descent: a height that drifts at rest is none
     runs = [run for run in runs if run.distance >= max(LEAST_DISTANCE, run.descent or 0.0)]
@@ -119,18 +120,9 @@ def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | No
     return height, ()
 
 
-def _areas_between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:
-    """First and last point of the areas before, between and after the ascents."""
-    begin = 0
-    for low, high in ascents:
-        yield begin, low
-        begin = high
-    yield begin, count - 1
-
-
 def _climb(smooth: FloatArray, low: int, high: int) -> tuple[int, int]:
     """First and last point of a lift, from the last at the bottom to the first at the top, without waiting times."""
-    margin = _zone_margin(float(smooth[high] - smooth[low]))
+    margin = max(1.0, _ZONE * float(smooth[high] - smooth[low]))
     inside = smooth[low : high + 1]
     bottom = np.flatnonzero(inside <= smooth[low] + margin)
     top = np.flatnonzero(inside >= smooth[high] - margin)
@@ -146,7 +138,7 @@ def _descent(
     if not falls:
         return None
     top, bottom = falls[0][0], falls[-1][1]
-    margin = _zone_margin(float(smooth[top] - smooth[bottom]))
+    margin = max(1.0, _ZONE * float(smooth[top] - smooth[bottom]))
     heights = smooth[top : bottom + 1]
     leaves = top + int(np.flatnonzero(heights >= smooth[top] - margin)[-1])
     arrives = top + int(np.flatnonzero(heights <= smooth[bottom] + margin)[0])
@@ -154,11 +146,6 @@ def _descent(
     before = slow[(slow >= area[0]) & (slow <= leaves)]
     after = slow[(slow >= max(arrives, leaves)) & (slow <= area[1])]
     return int(before[-1]) if len(before) else area[0], int(after[0]) if len(after) else area[1]
-
-
-def _zone_margin(drop: float) -> float:
-    """Height (m) of the zones at top and bottom of a descent with this drop (m)."""
-    return max(1.0, _ZONE * drop)
 
 
 def _moving_stretches(track: Track, motion: TrackMotion, height: FloatArray | None) -> Iterator[Stretch]:
@@ -211,19 +198,18 @@ def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float |
 def turning_points(values: FloatArray, least: float) -> list[int]:
     """Indices of the first value, of alternating highest and lowest values, and of the last value.
 
-    Parameters
-    ----------
-    values : (n,)
-        Finite.
-    least
-        Two neighbouring turning points but the first and the last differ at least by this.
+    values: (n,), finite.
+    least: two neighbouring turning points but the first and the last differ at least by this.
 
     >>> turning_points(np.array([0.0, 5.0, 4.5, 9.0, 1.0, 1.5, 0.0, 6.0]), 2.0)
     [0, 3, 6, 7]
     """
+    signs = np.sign(np.diff(values))
+    moving = np.flatnonzero(signs)
+    local_extremes = moving[np.flatnonzero(np.diff(signs[moving])) + 1].tolist()
     turning = [0]
     direction = high = low = 0
-    for here in _local_extremes(values):
+    for here in (*local_extremes, len(values) - 1):
         if direction >= 0 and values[here] > values[high]:
             high = here
         if direction <= 0 and values[here] < values[low]:
@@ -237,11 +223,3 @@ def turning_points(values: FloatArray, least: float) -> list[int]:
     if direction:
         turning.append(high if direction > 0 else low)
     return sorted({*turning, len(values) - 1})
-
-
-def _local_extremes(values: FloatArray) -> list[int]:
-    """Indices at which the values change direction, and the last index: only these can be turning points."""
-    signs = np.sign(np.diff(values))
-    moving = np.flatnonzero(signs)
-    changes = np.flatnonzero(np.diff(signs[moving])) + 1
-    return [*moving[changes].tolist(), len(values) - 1] if len(values) else []

@@ -21,24 +21,16 @@ STEEPEST: Final = 75.0 * DEGREE
 def slope_axes(fall_line_azimuth: float, slope_angle: float) -> FloatArray:
     """Unit vectors x (down the fall line), y (left), z (out of the snow), (3, 3), one a row, in east, north, up.
 
-    Parameters
-    ----------
-    fall_line_azimuth : rad
-        Compass direction in which the slope falls, clockwise from north.
-    slope_angle : rad
-        Inclination; 0 leaves z vertical.
+    fall_line_azimuth: rad, compass direction in which the slope falls, clockwise from north.
+    slope_angle: rad, inclination; 0 leaves z vertical.
 
     >>> slope_axes(0.0, math.pi / 6).round(3).tolist()
     [[0.0, 0.866, -0.5], [-1.0, 0.0, 0.0], [0.0, 0.5, 0.866]]
     """
     sine, cosine = math.sin(fall_line_azimuth), math.cos(fall_line_azimuth)
     fall, rise = math.cos(slope_angle), math.sin(slope_angle)
-    return (
-        np.array(
-            [[fall * sine, fall * cosine, -rise], [-cosine, sine, 0.0], [rise * sine, rise * cosine, fall]], dtype=float
-        )
-        + 0.0
-    )
+    axes = [[fall * sine, fall * cosine, -rise], [-cosine, sine, 0.0], [rise * sine, rise * cosine, fall]]
+    return np.array(axes, dtype=float) + 0.0  # no negative zeros
 
 
 def in_slope_frame(
@@ -93,15 +85,16 @@ def in_slope_frame(
     if track.place_sd is not None:
         parts = np.where(axes[None] == 0.0, 0.0, (axes[None] * track.place_sd[:, None, :]) ** 2)
         place_sd = np.asarray(np.sqrt(parts.sum(axis=-1)))
-    return replace(
-        track,
-        place=place,
-        velocity=velocity,
-        place_sd=place_sd,
-        axes="slope",
-        slope_angle=angle,
-        frame=_frame_words(track, fall_line_azimuth, slope_angle, origin),
+    words = "x horizontal distance down the fall line, y to the left, z height"
+    if slope_angle is not None:
+        words = f"x down the fall line, y to the left, z out of a plane slope of {slope_angle / DEGREE:.6g}°"
+    place_of_origin = ", ".join(f"{float(value):g}" for value in origin)
+    frame = (
+        f"{words}, in m; fall line towards {fall_line_azimuth / DEGREE:.6g}° from north; origin at ({place_of_origin}) "
+        f"m of: {track.frame}"
     )
+    track = replace(track, place=place, velocity=velocity, place_sd=place_sd)
+    return replace(track, axes="slope", slope_angle=angle, frame=frame)
 
 
 def _rotate(vectors: FloatArray, axes: FloatArray, missing_height: str) -> FloatArray:
@@ -135,20 +128,6 @@ def _require_frame_arguments(
         raise ParameterError("the origin of a slope is {value!r}; it must be three finite numbers in m").tag(
             "not_a_number", value=origin
         )
-
-
-def _frame_words(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> str:
-    """Text with the axes, the fall line's azimuth and the origin of a slope's frame."""
-    east, north, up = (float(value) for value in origin)
-    axes = (
-        "x horizontal distance down the fall line, y to the left, z height"
-        if slope_angle is None
-        else f"x down the fall line, y to the left, z out of a plane slope of {slope_angle / DEGREE:.6g}°"
-    )
-    return (
-        f"{axes}, in m; fall line towards {azimuth / DEGREE:.6g}° from north; origin at "
-        f"({east:g}, {north:g}, {up:g}) m of: {track.frame}"
-    )
 
 
 CLEARLY: Final = 3.0

@@ -199,10 +199,7 @@ def _noises(
     place: WeightedValues,
     rate: WeightedValues | None,
 ) -> tuple[float, float | None]:
-    """Standard deviation (m) of places about cubics through the places, and (m/s) of velocities likewise.
-
-    The deviation of velocities is None if no window contains enough of them.
-    """
+    """Standard deviations (m) of places and (m/s) of velocities about their cubics; None if velocities are too few."""
     fits = local_cubic(time, windows, half, place, None)
     place_noise = max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE)
     if rate is None:
@@ -278,8 +275,3 @@ class Resolution:
     def half_period(self) -> float:
         """Period (s) of which half of the amplitude is left: the resolution. Shorter swings are smoothed away."""
         return self.period_passed(0.5)
-
-    @property
-    def faithful_period(self) -> float:
-        """Period (s) of which 90 % of the amplitude is left."""
-        return self.period_passed(0.9)

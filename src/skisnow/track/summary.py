@@ -194,7 +194,7 @@ def summary_dict(summary: TrackSummary) -> Json:
             "method": "local cubic least squares",
             "window_s": smoothed.resolution.window,
             "half_amplitude_period_s": json_number(smoothed.resolution.half_period),
-            "ninety_percent_period_s": json_number(smoothed.resolution.faithful_period),
+            "ninety_percent_period_s": json_number(smoothed.resolution.period_passed(0.9)),
             "half_amplitude_wavelength_m": json_number(half_wavelength(summary)),
             "velocity_noise_m_per_s": json_number(smoothed.speed_noise),
         },

@@ -137,8 +137,11 @@ def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
 
 
 def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
-    """Turn from `start` to `end` (s) about the sharpest point of a piece, with radii (m) and 95 % interval."""
-    sharpest = _sharpest(motion, piece)
+    """Turn from `start` to `end` (s) with the sharpest point of a piece whose error is not unusually large."""
+    points = np.arange(piece.first, piece.last + 1)
+    points = points[np.isfinite(motion.curvature[points])]
+    points = points[motion.curvature_sd[points] <= 2.0 * np.median(motion.curvature_sd[points])]
+    sharpest = int(points[int(np.argmax(piece.sign * motion.curvature[points]))])
     headings, errors = _at_times(motion, (start, end))
     length = float(np.diff(np.interp((start, end), motion.time, motion.arc_length))[0])
     angle = float(headings[1] - headings[0])
@@ -156,15 +159,6 @@ def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> 
         length=length,
         share_passed=max(motion.smoothed.resolution.share_passed(2.0 * (end - start)), 0.0),
     )
-
-
-def _sharpest(motion: TrackMotion, piece: _Piece) -> int:
-    """Index of the point with the largest curvature, without points whose standard error is unusually large."""
-    inside = np.arange(piece.first, piece.last + 1)
-    points = inside[np.isfinite(motion.curvature[inside])]
-    error = motion.curvature_sd[points]
-    points = points[error <= 2.0 * np.median(error)]
-    return int(points[int(np.argmax(piece.sign * motion.curvature[points]))])
 
 
 def _at_times(motion: TrackMotion, times: tuple[float, float]) -> tuple[FloatArray, FloatArray]:

@@ -139,12 +139,10 @@ def _find_passage(
     tried = [crossing for crossing in near if crossing.forward]
     tried = [crossing for crossing in tried if crossing.time <= tried[0].time + CLIMB_BACK]
     if not tried:
-        backwards = any(0.0 < crossing.aside < line.width for crossing in near)
-        if backwards:
+        if any(0.0 < crossing.aside < line.width for crossing in near):
             words = Message("Gate {gate} was crossed against the course only.", gate=gate.name)
             return Passage(gate=gate, outcome="backwards", words=words)
-        words = Message("Gate {gate} was not reached.", gate=gate.name)
-        return Passage(gate=gate, outcome="not_reached", words=words)
+        return Passage(gate=gate, outcome="not_reached", words=Message("Gate {gate} was not reached.", gate=gate.name))
     results = [_judge_crossing(gate, line, crossing, parts) for crossing in tried]
     return next((crossing for crossing in results if crossing.outcome == "passed"), results[0])
 

@@ -205,11 +205,21 @@ def fixed_points(recording: Recording, fix: BoolArray) -> tuple[Recording, BoolA
     inside[first : last + 1] = True
     ordered = fix | _between_neighbours(recording.time, fix)
     counts = {BEFORE: first, AFTER: len(fix) - 1 - last, OUT_OF_ORDER: int(np.count_nonzero(inside & ~ordered))}
-    left_out = dict(recording.left_out)
-    for words, count in counts.items():
-        left_out[words] = left_out.get(words, 0) + count
+    kinds = dict.fromkeys((*recording.left_out, *counts))
+    left_out = {words: recording.left_out.get(words, 0) + counts.get(words, 0) for words in kinds}
     used = inside & ordered
-    return _select_points(recording, used, left_out), fix[used]
+    columns = {name: getattr(recording, name) for name in _ARRAYS}
+    arrays: dict[str, Any] = {name: None if values is None else values[used] for name, values in columns.items()}
+    shift = float(arrays["time"][0] - recording.time[0])
+    selected = replace(
+        recording,
+        **arrays,
+        places_in_file=[where for where, is_used in zip(recording.places_in_file, used, strict=True) if is_used],
+        start=None if recording.start is None else recording.start + timedelta(seconds=shift),
+        first_time=recording.first_time if recording.start is not None else recording.first_time + shift,
+        left_out=left_out,
+    )
+    return selected, fix[used]
 
 
 def _between_neighbours(time: FloatArray, fix: BoolArray) -> BoolArray:
@@ -225,22 +235,3 @@ def _between_neighbours(time: FloatArray, fix: BoolArray) -> BoolArray:
             & (time >= fixed_time[np.maximum(before, 0)])
             & (time <= fixed_time[np.minimum(after, len(time) - 1)])
         )
-
-
-def _select_points(recording: Recording, used: BoolArray, left_out: dict[str, int]) -> Recording:
-    """Recording of the used points only, from the first of them, with new counts of omitted points."""
-    if used.all():
-        return replace(recording, left_out=left_out)
-    arrays: dict[str, Any] = {}
-    for name in _ARRAYS:
-        values = getattr(recording, name)
-        arrays[name] = None if values is None else values[used]
-    shift = float(recording.time[np.flatnonzero(used)[0]] - recording.time[0])
-    return replace(
-        recording,
-        **arrays,
-        places_in_file=[where for where, is_used in zip(recording.places_in_file, used, strict=True) if is_used],
-        start=None if recording.start is None else recording.start + timedelta(seconds=shift),
-        first_time=recording.first_time if recording.start is not None else recording.first_time + shift,
-        left_out=left_out,
-    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC
 from typing import Final, NoReturn
 from xml.parsers import expat
 
@@ -128,8 +128,13 @@ def read_gpx(text: str, name: str) -> Recording:
     points = _read_points(text, name)
     moments, numbers = [], []
     for place, point in enumerate(points, start=1):
-        moments.append(_required_time(point, name, place))
         absent, texts = None if point.needs_place else "nan", point.texts
+        time = moment(texts.get("time", "").upper())
+        if time is None:
+            allowed = Message("a time such as 2022-12-27T15:51:14Z in every point, unlike in a drawn route")
+            value = texts.get("time") or None
+            raise track_error("not_a_time", name, allowed, place=f"point {place}", column="time", value=value)
+        moments.append(time.replace(tzinfo=UTC))  # a time without a zone is in UTC, as the format defines
         # speed of GPX 1.0, or of the first element called speed in the point's extensions
         cells = {
             ("lat", "degrees"): texts.get("lat", absent),
@@ -145,8 +150,6 @@ def read_gpx(text: str, name: str) -> Recording:
         places_in_file=[f"point {place + 1}" for place in range(len(points))],
         time=np.array([(time - moments[0]).total_seconds() for time in moments]),
         place=table[:, :3],
-        is_geodetic=True,
-        time_scale="UTC",
         start=moments[0] if moments else None,
         speed=table[:, 3],
         speed_kind="as the device gives it",
@@ -174,16 +177,6 @@ def _read_points(text: str, name: str) -> list[_Point]:
         action = Message("The file has no recorded track. Waypoints, routes and courses are not read.")
         raise track_error("unreadable_file", name, allowed, action, value=counted or f"<{reader.root}>")
     return reader.points
-
-
-def _required_time(point: _Point, name: str, place: int) -> datetime:
-    """UTC time of a point; rejects a point without one."""
-    text = point.texts.get("time", "")
-    time = moment(text.upper())
-    if time is None:
-        allowed = Message("a time such as 2022-12-27T15:51:14Z in every point, unlike in a drawn route")
-        raise track_error("not_a_time", name, allowed, place=f"point {place}", column="time", value=text or None)
-    return time.replace(tzinfo=UTC)  # a time without a zone is in UTC, as the format defines
 
 
 def _number(text: str | None, name: str, place: int, column: str, unit: str) -> float:

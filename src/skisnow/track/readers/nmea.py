@@ -138,36 +138,22 @@ def read_nmea(data: bytes, name: str) -> Recording:
         counted = ", ".join(f"{count} {words}" for words, count in counts.items() if count)
         raise track_error("empty_file", name, allowed, action, value=counted)
     times, start = _times(epochs)
-    placed = [number for number, epoch in enumerate(epochs) if _has_place(epoch)]
     counts[NO_PLACE] = sum(not _has_place(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)
-    return _make_recording(name, [epochs[number] for number in placed], times[placed], start, counts)
-
-
-def _has_place(epoch: _Epoch) -> bool:
-    """True if the epoch has a sentence that contains a place."""
-    return any(kind in PLACES for _, kind in epoch.seen)
-
-
-def _make_recording(
-    name: str,
-    epochs: list[_Epoch],
-    times: np.ndarray[Any, np.dtype[np.float64]],
-    start: datetime | None,
-    counts: dict[str, int],
-) -> Recording:
-    """Recording of a file's epochs, with their times (s) and the counts of omitted sentences."""
-    course = np.array([epoch.course for epoch in epochs]) * DEGREE
-    speed = np.array([epoch.speed for epoch in epochs])
-    velocity = np.column_stack([speed * np.sin(course), speed * np.cos(course), np.full(len(epochs), np.nan)])
-    sd = np.array([epoch.sd for epoch in epochs])
-    height, heights = _heights_and_reference(epochs)
+    placed = [number for number, epoch in enumerate(epochs) if _has_place(epoch)]
+    epochs, times = [epochs[number] for number in placed], times[placed]
+    columns = ("speed", "course", "height", "separation", "sd")
+    speed, course, height, separation, sd = (np.array([getattr(e, column) for e in epochs]) for column in columns)
+    direction = course * DEGREE
+    velocity = np.column_stack([speed * np.sin(direction), speed * np.cos(direction), np.full(len(epochs), np.nan)])
+    heights = "above mean sea level, as recorded"
+    if np.isfinite(height).any() and np.isfinite(separation[np.isfinite(height)]).all():
+        height = height + separation
+        heights = "above the ellipsoid (mean sea level and the geoid's separation of the sentences)"
     return Recording(
         name=name,
         places_in_file=[f"row {epoch.row}" for epoch in epochs],
         time=times,
         place=np.column_stack([np.array([epoch.place for epoch in epochs]), height]),
-        is_geodetic=True,
-        time_scale="UTC",
         start=None if start is None else start + timedelta(seconds=float(times[0])),
         speed=speed,
         speed_kind="over the ground (horizontal)",
@@ -179,6 +165,11 @@ def _make_recording(
         heights=heights,
         left_out=counts,
     )
+
+
+def _has_place(epoch: _Epoch) -> bool:
+    """True if the epoch has a sentence that contains a place."""
+    return any(kind in PLACES for _, kind in epoch.seen)
 
 
 def _read_epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
@@ -234,15 +225,6 @@ def _times(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
         before = epoch
     start = None if dated is None else datetime.combine(dated, epochs[0].time, UTC)
     return np.array(seconds) - seconds[0], start
-
-
-def _heights_and_reference(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]], str]:
-    """Heights (m) and their reference: the ellipsoid if each height has a geoid separation, otherwise sea level."""
-    height = np.array([epoch.height for epoch in epochs])
-    separation = np.array([epoch.separation for epoch in epochs])
-    if np.isfinite(height).any() and np.isfinite(separation[np.isfinite(height)]).all():
-        return height + separation, "above the ellipsoid (mean sea level and the geoid's separation of the sentences)"
-    return height, "above mean sea level, as recorded"
 
 
 def _has_fix(message: Any) -> bool:

@@ -22,6 +22,7 @@ class Recording(Track):
     ``velocity`` and ``place_sd`` are east, north, up at the point itself if ``is_geodetic``, otherwise along x, y, z.
 
     places_in_file: place of each point in the file, for messages: ``"row 12"``.
+    time_scale: as of a track (default: UTC).
     is_geodetic: True if ``place`` is latitude (°), longitude (°) and height (m), otherwise x, y, z in m.
     fix: (n,) bool or None, True if the receiver had a fix; None if unknown.
     heights: description of the reference of the heights.
@@ -30,9 +31,10 @@ class Recording(Track):
     not_finite: (n,) bool or None, True for points of which the file has a cell such as `nan` or `inf`.
     """
 
+    time_scale: str = "UTC"
     _: KW_ONLY
     places_in_file: Sequence[str]
-    is_geodetic: bool
+    is_geodetic: bool = True
     fix: BoolArray | None = None
     heights: str = "as in the file"
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -44,8 +46,6 @@ FARTHEST: Final = 1e8
 """Largest place, time and distance (m, s), far beyond those of a ski run."""
 FASTEST_NUMBER: Final = 1e4
 """Largest speed (m/s), far beyond that of anything on snow."""
-
-
 LOCAL: Final = tuple(Quantity(f"{axis}_m", axis, lowest=-FARTHEST, highest=FARTHEST, field=axis) for axis in "xyz")
 GEODETIC: Final = tuple(
     Quantity(name, field, lowest=-most, highest=most, field=field)

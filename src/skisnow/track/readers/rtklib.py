@@ -104,7 +104,6 @@ def read_rtklib(text: str, name: str) -> Recording:
         places_in_file=rows,
         time=np.array([(moment - moments[0]).total_seconds() for moment in moments]),
         place=np.column_stack([columns[name] for name in PLACES]),
-        is_geodetic=True,
         time_scale=header.scale,
         start=moments[0] if moments else None,
         speed=np.full(len(rows), np.nan) if velocity is None else np.linalg.norm(velocity, axis=1),
