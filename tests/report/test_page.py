@@ -343,7 +343,7 @@ def test_the_days_of_the_campaign_are_read_from_its_times(campaign: Campaign) ->
     dated = replace(
         campaign, penetration=None, density=None, drop_cone=None, shear=replace(shear, further={"time": times})
     )
-    assert ReportData(analysis_of(dated)).dates == ("2026-01-31", "2026-02-03")
+    assert ReportData(analysis_of(dated)).dates == "2026-01-31 to 2026-02-03"
     assert ReportData(analysis_of(replace(dated, shear=shear))).dates is None
 
 

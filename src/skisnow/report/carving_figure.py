@@ -78,7 +78,7 @@ def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> No
     """Draw the values `key` of each answer along the ski, and the snow's surface for the edge depth."""
     for place, answer in enumerate(answers):
         if answer[key] is not None:
-            axes.plot(answer["station_m"], _with_nan(answer[key]), **line_style(place))
+            axes.plot(answer["station_m"], np.array(answer[key], dtype=float), **line_style(place))
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylabel(label)
@@ -104,7 +104,7 @@ def _draw_plan(axes: Axes, answers: list[Json]) -> None:
         if answer["edge_line_mm"] is None:
             continue
         colour = line_style(place)["color"]
-        station, line = np.asarray(answer["station_m"])[::-1], _with_nan(answer["edge_line_mm"])[::-1] * MM
+        station, line = np.asarray(answer["station_m"])[::-1], np.array(answer["edge_line_mm"], dtype=float)[::-1] * MM
         line -= np.interp(0.0, station, line)
         axes.plot(station, line / MM, color=colour, linewidth=3.0, alpha=0.35, solid_capstyle="butt")
         circles = []
@@ -122,7 +122,7 @@ def _draw_plan(axes: Axes, answers: list[Json]) -> None:
 
 def contact_ends(answer: Json) -> tuple[float, float]:
     """Rear and front station (m) at which the edge passes the undisturbed surface."""
-    station, depth = np.asarray(answer["station_m"])[::-1], _with_nan(answer["edge_depth_mm"])[::-1]
+    station, depth = np.asarray(answer["station_m"])[::-1], np.array(answer["edge_depth_mm"], dtype=float)[::-1]
     below = np.flatnonzero(depth > 0.0)
     rear, front = int(below[0]), int(below[-1])
 
@@ -156,8 +156,3 @@ def arc_through(station: FloatArray, line: FloatArray, rear: float, front: float
     x = np.linspace(rear, front, 121)
     root = np.sqrt(np.maximum((E / 2.0) ** 2 - (x**2 + D * x + F), 0.0))
     return x, -E / 2.0 - np.copysign(root, -E)
-
-
-def _with_nan(values: list[float | None]) -> FloatArray:
-    """Numbers with NaN for None."""
-    return np.array([np.nan if value is None else value for value in values])

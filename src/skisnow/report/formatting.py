@@ -9,14 +9,7 @@ from typing import Any, Final, Literal, TypeAlias
 
 from markupsafe import Markup
 
-from .._support.messages import (
-    LocalFormatter,
-    Message,
-    current_language,
-    decimal_sign,
-    local_number,
-    translations,
-)
+from .._support.messages import LocalFormatter, Message, current_language, decimal_sign, local_number, translations
 from .._support.units import Shown
 
 Style: TypeAlias = Literal["typeset", "plain"]
@@ -57,16 +50,16 @@ def _signed(text: str, style: Style) -> str:
     return local_number(text.replace("-", "−")) if style == "typeset" else text
 
 
-def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """Text of an interval with both ends.
+def interval(pair: Sequence[float] | None, digits: int = 3) -> str:
+    """Text of an interval with both ends, typeset; a dash for None.
 
     >>> interval([-0.5, 2.0])
     '[−0.500, 2.00]'
     """
     if pair is None:
-        return ABSENT[style]
-    low, high = (significant(end, digits, style=style) for end in pair)
-    between = "; " if style == "typeset" and decimal_sign(current_language()) == "," else ", "
+        return ABSENT["typeset"]
+    low, high = (significant(end, digits) for end in pair)
+    between = "; " if decimal_sign(current_language()) == "," else ", "
     return f"[{low}{between}{high}]"
 
 
@@ -105,33 +98,29 @@ def json_text(contents: Mapping[str, Any]) -> str:
     return json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
 
 
-def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """Text of a range, from its minimum to its maximum.
+def from_to(pair: Sequence[float], digits: int) -> str:
+    """Text of a range, from its minimum to its maximum, with this number of significant digits.
 
-    >>> from_to([0.04, 90.0])
+    >>> from_to([0.04, 90.0], 3)
     '0.0400 to 90.0'
     """
-    if pair is None:
-        return ABSENT[style]
-    low, high = (significant(end, digits, style=style) for end in pair)
-    return str(Message("{low} to {high}", low=low, high=high)) if style == "typeset" else f"{low} to {high}"
+    low, high = (significant(end, digits) for end in pair)
+    return str(Message("{low} to {high}", low=low, high=high))
 
 
-def probability(p: float | None, *, style: Style = "typeset") -> str:
+def probability(p: float) -> str:
     """Text of a p value with two digits; below 0.001 and above 0.99 only the limit.
 
     >>> probability(0.5234), probability(3e-12), probability(0.9999)
     ('0.52', '< 0.001', '> 0.99')
     """
-    if p is None:
-        return ABSENT[style]
     if _SMALLEST_P <= p <= _LARGEST_P:
-        return significant(p, 2, style=style)
+        return significant(p, 2)
     sign, limit = ("<", _SMALLEST_P) if p < _SMALLEST_P else (">", _LARGEST_P)
-    return f"{sign} {_signed(str(limit), style)}"
+    return f"{sign} {local_number(str(limit))}"
 
 
-def p_equals(p: float | None) -> str:
+def p_equals(p: float) -> str:
     """Text of a p value inside a sentence: ``p = 0.52`` or ``p < 0.001``, not broken over lines."""
     text = probability(p)
     return (f"p {text}" if text[0] in "<>" else f"p = {text}").replace(" ", "\u00a0")

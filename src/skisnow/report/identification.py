@@ -81,13 +81,19 @@ def identify_page(result: Identification, pictures: list[Picture]) -> str:
     key = [prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)]
     warnings = [prose("{text}.", text=text) for text in result.warnings]
     correlations = [correlation_table(result)] if len(result.parameters) > 1 else []
+    effort = result.effort
+    runs = counted(effort.simulations, "{count} simulated run", "{count} simulated runs")
+    rounds = counted(effort.rounds, "{count} Jacobian", "{count} Jacobians")
+    methods = [prose("{name} was taken for {kind}.", name=name, kind=kind) for name, kind in result.data]
+    methods += [prose("{text}.", text=text) for text in result.methods]
+    methods.append(prose("{runs}, {rounds}, {wall:.1f} s.", runs=runs, rounds=rounds, wall=effort.wall_s))
     sections = [
         Section("outcome", Message("Outcome"), key=key, tables=[parameters_table(result)]),
         Section("warnings", Message("Warnings"), words=warnings),
         Section("fit", Message("Measured and identified"), pictures=fits),
         Section("correlation", Message("Correlations"), tables=correlations),
         Section("profiles", Message("Profiles"), pictures=profiles),
-        Section("provenance", Message("How it was computed"), words=_method_sentences(result)),
+        Section("provenance", Message("How it was computed"), words=methods),
     ]
     facts = [
         (Message("Scenario"), result.scenario),
@@ -109,16 +115,6 @@ def _headline(result: Identification) -> Markup:
         ends = Message("95 % interval {interval}", interval=interval(pair))
     value = Markup("<strong>{}</strong>").format(f"{significant(first.value)} {first.parameter.unit}".strip())
     return prose("{name} {value}, {ends}.", name=first.parameter.name, value=value, ends=ends)
-
-
-def _method_sentences(result: Identification) -> list[Markup]:
-    """Sentences about data, methods, and the number of simulations with the time they took."""
-    effort = result.effort
-    runs = counted(effort.simulations, "{count} simulated run", "{count} simulated runs")
-    rounds = counted(effort.rounds, "{count} Jacobian", "{count} Jacobians")
-    last = prose("{runs}, {rounds}, {wall:.1f} s.", runs=runs, rounds=rounds, wall=effort.wall_s)
-    data = [prose("{name} was taken for {kind}.", name=name, kind=kind) for name, kind in result.data]
-    return [*data, *(prose("{text}.", text=text) for text in result.methods), last]
 
 
 def _drawings(result: Identification) -> Iterator[Drawing]:
@@ -208,9 +204,8 @@ def correlation_table(result: Identification) -> Table:
 
 def _pair(interval: Interval | None) -> list[float] | None:
     """Both ends of an interval as a list; None without an interval, or if an end is unknown."""
-    if interval is None or interval[0] is None or interval[1] is None:
-        return None
-    return [interval[0], interval[1]]
+    ends = [end for end in interval or () if end is not None]
+    return ends if len(ends) == 2 else None
 
 
 _LARGEST_MM, _SMALLEST_MM = 120.0, 55.0
@@ -256,11 +251,8 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
     for axes, label in zip(rows, labels, strict=True):
         axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
         axes.set_ylabel(_RESIDUAL_LABELS[label])
-    x_labels = {
-        "track": Message("time (s)"),
-        "photo_cells": Message("distance from the start (m)"),
-    }
-    rows[-1].set_xlabel(x_labels[fits[0].kind])
+    is_track = fits[0].kind == "track"
+    rows[-1].set_xlabel(Message("time (s)") if is_track else Message("distance from the start (m)"))
     figure.align_ylabels()
     legend_below(figure, handles)
     return figure

@@ -12,11 +12,11 @@ from typing import Any, Final
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import local_number
 from ..carving.question import CARVE_KEYS
 from ..studies import StudyTable
+from .figures.style import DOUBLE_MM, new_figure
 from .formatting import figure_text
 
 Json = dict[str, Any]
@@ -24,7 +24,6 @@ Json = dict[str, Any]
 MOST_PANELS: Final = 12
 MOST_LINES: Final = 7
 MOST_COLUMNS: Final = 5
-_LOG_FROM: Final = 20.0
 _CROWDED: Final = 4  # columns, from which neighbours' axis labels would touch
 _CAPTION_LETTERS: Final = 125  # maximum length of a line of the caption, including the markup of symbols
 _LETTERS: Final = 105  # maximum length of a title over the whole width of a figure
@@ -92,7 +91,7 @@ def drawn_table(table: StudyTable) -> StudyTable:
     return StudyTable(table.columns, rows, table.varied)
 
 
-def fixed_inputs(table: StudyTable) -> str:
+def _fixed_inputs(table: StudyTable) -> str:
     """Caption of a map with the inputs that are equal in all rows and differ from their defaults; can be empty."""
     words = []
     for name, key in CARVE_KEYS.items():
@@ -103,36 +102,45 @@ def fixed_inputs(table: StudyTable) -> str:
     return "\n".join(textwrap.wrap(", ".join(words), _CAPTION_LETTERS, break_on_hyphens=False))
 
 
-def write_caption(figure: Figure, text: str) -> None:
-    """Write a text above the panels, at the left; nothing if it is empty."""
-    if text:
-        figure.suptitle(text, x=0.01, ha="left", fontsize=8.0)
+def empty_map(
+    table: StudyTable, layout: MapLayout, ordinate: str, *, row_mm: tuple[float, float]
+) -> tuple[Figure, list[tuple[Axes, list[Json]]]]:
+    """Figure of a map with its caption, and axes and rows of its panels, still empty but with titles and labels.
 
+    There is one panel for each combination of the values of `layout.panels`. The columns are the values of the last of
+    these inputs if they fit; otherwise the rows of panels are equally long.
 
-def panels_of(table: StudyTable, layout: MapLayout) -> list[tuple[str, list[Json]]]:
-    """Title and rows of each panel of a map: one for each combination of the values of `layout.panels`."""
-    combinations = itertools.product(*(_distinct(table, name) for name in layout.panels))
+    row_mm: height (mm) of the only row of panels, and of each of several rows.
+    """
     panels = []
-    for values in combinations:
-        rows = [row for row in table.rows if all(row[n] == v for n, v in zip(layout.panels, values, strict=True))]
+    for values in itertools.product(*(_distinct(table, name) for name in layout.panels)):
+        named = dict(zip(layout.panels, values, strict=True))
+        rows = [row for row in table.rows if all(row[name] == value for name, value in named.items())]
         if rows:
-            title = ", ".join(short(name, value) for name, value in zip(layout.panels, values, strict=True))
-            panels.append((title, rows))
-    return panels
-
-
-def panel_columns(table: StudyTable, layout: MapLayout, count: int) -> int:
-    """Number of columns of panels: one for each value of the last input if they fit, otherwise equal rows."""
-    last = len(_distinct(table, layout.panels[-1])) if layout.panels else 1
+            panels.append((", ".join(short(name, value) for name, value in named.items()), rows))
+    count, last = len(panels), len(_distinct(table, layout.panels[-1])) if layout.panels else 1
+    columns = -(-count // -(-count // MOST_COLUMNS))
     if len(layout.panels) > 1 and last <= MOST_COLUMNS and count % last == 0:
-        return last
-    rows = -(-count // MOST_COLUMNS)
-    return -(-count // rows)
-
-
-def wants_logarithm(name: str, values: FloatArray) -> bool:
-    """True if an input's values are positive and span more than a factor of 20; False for an angle."""
-    return name != "edge_angle_deg" and bool(values.min() > 0 and values.max() > _LOG_FROM * values.min())
+        columns = last
+    grid_rows = -(-count // columns)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (row_mm[0] if grid_rows == 1 else row_mm[1] * grid_rows))
+    grid = figure.subplots(grid_rows, columns, squeeze=False, sharex=True, sharey=True)
+    all_axes: list[Axes] = list(grid.flat)
+    for spare in all_axes[count:]:
+        spare.set_visible(False)
+    is_long = max(len(title) for title, _ in panels) > _LETTERS // columns
+    for place, (axes, (title, _)) in enumerate(zip(all_axes, panels, strict=False)):
+        is_lowest, is_left = place + columns >= count, place % columns == 0
+        axes.set_title(title.replace(", ", "\n") if is_long else title, loc="left", fontsize=7.5)
+        axes.tick_params(labelbottom=is_lowest, labelleft=is_left)
+        # of many columns only the middle one has a label
+        if is_lowest and (columns < _CROWDED or place % columns == columns // 2 or count % columns):
+            axes.set_xlabel(label(layout.x))
+        if is_left:
+            axes.set_ylabel(ordinate)
+    if caption := _fixed_inputs(table):
+        figure.suptitle(caption, x=0.01, ha="left", fontsize=8.0)
+    return figure, [(axes, rows) for axes, (_, rows) in zip(all_axes, panels, strict=False)]
 
 
 def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list[Json]]]:
@@ -172,30 +180,6 @@ def _prefix_and_suffix(name: str) -> tuple[str, str]:
     if key.symbol:
         return f"{key.symbol} = ", unit
     return ("clamp ", unit) if name == "clamp_length_m" else ("", unit or f" {key.label}".rstrip())
-
-
-def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[Axes]:
-    """Add a grid of axes with shared scales to a figure, one for each title; returns them without unused cells."""
-    rows = -(-len(titles) // columns)
-    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
-    all_axes: list[Axes] = list(grid.flat)
-    for spare in all_axes[len(titles) :]:
-        spare.set_visible(False)
-    long = max(len(title) for title in titles) > _LETTERS // columns
-    for place, (axes, title) in enumerate(zip(all_axes, titles, strict=False)):
-        axes.set_title(title.replace(", ", "\n") if long else title, loc="left", fontsize=7.5)
-        axes.tick_params(labelbottom=place + columns >= len(titles), labelleft=place % columns == 0)
-    return all_axes[: len(titles)]
-
-
-def label_outside(panels: Sequence[Axes], columns: int, x: str, y: str) -> None:
-    """Label the axes at the left and the lower rim; of many columns only the middle one."""
-    for place, axes in enumerate(panels):
-        lowest = place + columns >= len(panels)
-        if lowest and (columns < _CROWDED or place % columns == columns // 2 or len(panels) % columns):
-            axes.set_xlabel(x)
-        if place % columns == 0:
-            axes.set_ylabel(y)
 
 
 def _distinct(table: StudyTable, name: str) -> list[Any]:

@@ -15,41 +15,15 @@ from matplotlib.lines import Line2D
 from .._support.messages import Message
 from .._support.units import DEGREE
 from ..studies import StudyTable
-from .figures.style import (
-    BLACK,
-    BLUE,
-    COLOURS,
-    DOUBLE_MM,
-    GREY,
-    MARKERS,
-    VERMILLION,
-    legend_below,
-    logarithmic,
-    new_figure,
-    plain_number,
-)
-from .study_layout import (
-    MOST_LINES,
-    MapLayout,
-    axes_of_panels,
-    drawn_table,
-    fixed_inputs,
-    label,
-    label_outside,
-    lines_of,
-    map_layout,
-    panel_columns,
-    panels_of,
-    short,
-    wants_logarithm,
-    write_caption,
-)
+from .figures.style import BLACK, BLUE, COLOURS, GREY, MARKERS, VERMILLION, legend_below, logarithmic, plain_number
+from .study_layout import MOST_LINES, MapLayout, drawn_table, empty_map, label, lines_of, map_layout, short
 
 Json = dict[str, Any]
 
 LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Grip utilisations at which the colour changes; at 1 the edge loses grip."""
 _COLOURS: Final = ("#2166AC", "#5E9BC9", "#A6CDE3", "#DDEBF3", "#FBE3D0", "#F4B183", "#DD7F4B", "#B8431C")
+_LOG_FROM: Final = 20.0  # ratio of the largest to the smallest value of an input from which its axis is logarithmic
 _LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
 
 
@@ -60,19 +34,16 @@ def grip_map(table: StudyTable) -> Figure:
     """
     layout = map_layout(table, second_is_number=True)
     table = drawn_table(table)
-    panels = panels_of(table, layout)
-    columns = panel_columns(table, layout, len(panels))
-    rows = -(-len(panels) // columns)
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (70.0 if rows == 1 else 50.0 * rows))
-    every = axes_of_panels(figure, [title for title, _ in panels], columns)
-    for axes, (_, of_panel) in zip(every, panels, strict=True):
+    ordinate = Message("side force / limit") if layout.second is None else label(layout.second)
+    figure, panels = empty_map(table, layout, ordinate, row_mm=(70.0, 50.0))
+    every = [axes for axes, _ in panels]
+    for axes, rows in panels:
         if layout.second is None:
-            _draw_share_lines(axes, of_panel, layout)
+            _draw_share_lines(axes, rows, layout)
         else:
             if not layout.sampled:
-                _draw_field(axes, of_panel, layout)
-            _draw_points(axes, of_panel, layout)
-    ordinate = Message("side force / limit") if layout.second is None else label(layout.second)
+                _draw_field(axes, rows, layout)
+            _draw_points(axes, rows, layout)
     _set_scales(every[0], table.rows, layout.x, layout.second)
     if layout.second is None:
         shares = np.array([share_of_limit(row) for row in table.rows])
@@ -81,12 +52,10 @@ def grip_map(table: StudyTable) -> Figure:
         for axes in every:  # room for the symbols at the rim
             axes.use_sticky_edges = False
             axes.margins(0.03)
-    label_outside(every, columns, label(layout.x), ordinate)
     if layout.second is not None and not layout.sampled:
         _draw_colour_bar(figure, every)
-    write_caption(figure, fixed_inputs(table))
-    for axes, (_, of_panel) in zip(every, panels, strict=True):
-        axes.legend(handles=_grip_handles(layout, of_panel), loc="best", fontsize=5.5, frameon=True, framealpha=0.9)
+    for axes, rows in panels:
+        axes.legend(handles=_grip_handles(layout, rows), loc="best", fontsize=5.5, frameon=True, framealpha=0.9)
     return figure
 
 
@@ -143,11 +112,12 @@ def _draw_share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> No
 
 
 def _set_scales(axes: Axes, rows: Sequence[Json], x: str, y: str | None) -> None:
-    """Set logarithmic axes of inputs that span a large factor."""
+    """Set logarithmic axes of inputs other than an angle whose values are positive and span a large factor."""
     for which, name in (("x", x), ("y", y)):
-        values = np.zeros(1) if name is None else _numbers(rows, name)
-        if name is not None and wants_logarithm(name, values):
-            logarithmic(axes, which, values)
+        if name not in (None, "edge_angle_deg"):
+            values = _numbers(rows, str(name))
+            if values.min() > 0 and values.max() > _LOG_FROM * values.min():
+                logarithmic(axes, which, values)
 
 
 def _draw_colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
@@ -183,26 +153,21 @@ def radius_map(table: StudyTable) -> Figure:
     """
     layout = map_layout(table, second_is_number=False)
     table = drawn_table(table)
-    panels = panels_of(table, layout)
-    columns = panel_columns(table, layout, len(panels))
     scale = _colour_scale(layout, table.rows)
-    rows = -(-len(panels) // columns)
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (75.0 if rows == 1 else 52.0 * rows))
+    ordinate = Message("turn radius (m):\ncircle through boot and ±0.4 m")
+    figure, panels = empty_map(table, layout, ordinate, row_mm=(75.0, 52.0))
     values = [value for value, _ in lines_of(table.rows, layout.second)]
-    every = axes_of_panels(figure, [title for title, _ in panels], columns)
-    for axes, (_, of_panel) in zip(every, panels, strict=True):
+    for axes, rows in panels:
         if layout.x == "edge_angle_deg":
-            _draw_sidecut(axes, of_panel)
+            _draw_sidecut(axes, rows)
         if _has_lines(layout, values):
-            _draw_lines(axes, of_panel, layout, values)
+            _draw_lines(axes, rows, layout, values)
         else:
-            _draw_cloud(axes, of_panel, layout, scale)
-    _set_scales(every[0], table.rows, layout.x, None)
+            _draw_cloud(axes, rows, layout, scale)
+    _set_scales(panels[0][0], table.rows, layout.x, None)
     radii = _numbers(table.rows, RADIUS)
     if np.isfinite(radii).any():
-        every[0].set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
-    label_outside(every, columns, label(layout.x), Message("turn radius (m):\ncircle through boot and ±0.4 m"))
-    write_caption(figure, fixed_inputs(table))
+        panels[0][0].set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
     if scale is not None and not _has_lines(layout, values):
         figure.colorbar(scale, ax=figure.axes, label=label(str(layout.second)), pad=0.01, aspect=40)
     legend_below(figure, _radius_handles(layout, values, table.rows))
@@ -286,4 +251,4 @@ def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) 
 
 def _numbers(rows: Sequence[Json], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Column of the rows, shape (n,), NaN for None."""
-    return np.array([np.nan if row[name] is None else float(row[name]) for row in rows])
+    return np.array([row[name] for row in rows], dtype=float)

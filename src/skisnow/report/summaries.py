@@ -16,6 +16,7 @@ from .._support.errors import SkisnowError, SkisnowWarning
 from .._support.messages import Message
 from .._support.units import DEGREE
 from .._support.user_files import is_file, read_json
+from ..comparison.distances import arc_lengths
 from ..simulation.run_summary import run_gates
 from ..track.course.gates_table import gate_rows
 from ..track.track import Track
@@ -108,11 +109,6 @@ def _maximum_of_key(key: str, *, by: Callable[[float], float] = float) -> Callab
     return lambda answer: max((value for value in answer[key] or () if value is not None), key=by, default=None)
 
 
-def _ski_number(key: str) -> Callable[[Json], float | None]:
-    """Function that returns the number `key` of an answer's ski."""
-    return lambda answer: answer["ski"][key]
-
-
 _SAME: Final = 1e-6  # %, of rounding
 _NOTHING: Final = 1e-6  # limit below which an imbalance of force or moment is rounding
 _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
@@ -126,8 +122,8 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
     ("the same, side force spread the other way (m)", itemgetter("turn_radius_boot_other_spread_m")),
     ("turn radius, boot and ends of contact (m)", itemgetter("turn_radius_chord_m")),
     ("turn radius, median over the contact (m)", itemgetter("turn_radius_median_m")),
-    ("sidecut radius of three widths (m)", _ski_number("sidecut_radius_of_three_widths_m")),
-    ("sidecut radius of the whole edge line (m)", _ski_number("sidecut_radius_of_edge_line_m")),
+    ("sidecut radius of three widths (m)", lambda answer: answer["ski"]["sidecut_radius_of_three_widths_m"]),
+    ("sidecut radius of the whole edge line (m)", lambda answer: answer["ski"]["sidecut_radius_of_edge_line_m"]),
     ("contact length (m)", itemgetter("contact_length_m")),
     ("loaded contact length (m)", itemgetter("bearing_length_m")),
     ("edge depth, afterbody / forebody", itemgetter("afterbody_depth_ratio")),
@@ -268,15 +264,12 @@ def _difference_interval(tight: Mapping[str, Any], wide: Mapping[str, Any]) -> t
 
 def run_verdict(first: Track, other: Track) -> Message | None:
     """Which of two computed runs is faster over the length that both ran; None without such a length."""
-    ways = [
-        np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(run.place, axis=0), axis=1))]) for run in (first, other)
-    ]
+    ways = [arc_lengths(run.place) for run in (first, other)]
     length = min(way[-1] for way in ways)
     if not np.isfinite(length) or length <= 0.0:
         return None
-    one, two = (
-        float(np.interp(length, way, run.time - run.time[0])) for way, run in zip(ways, (first, other), strict=True)
-    )
+    runs = zip(ways, (first, other), strict=True)
+    one, two = (float(np.interp(length, way, run.time - run.time[0])) for way, run in runs)
     if abs(one - two) < _SAME_TIME:
         return Message(
             "{a} and {b} are equally fast over the {length:.4g} m that both ran, within {limit:g} s.",

@@ -116,7 +116,10 @@ def _csv_cells(column: Column, values: Sequence[Any]) -> list[Sequence[str]]:
         return [_digits([value for value, _ in values]), *_digits_of_ends([pair for _, pair in values])]
     if column.numeric:
         return [_digits(values)]
-    return [list(map(_CSV_TEXT[column.kind], values))]
+    if column.kind in ("yes", "tick"):
+        return [["true" if value else "false" for value in values]]
+    texts = map("; ".join, values) if column.kind == "codes" else ("" if v is None else str(v) for v in values)
+    return [list(map(protect_from_formulas, texts))]
 
 
 def _digits_of_ends(pairs: Sequence[Any]) -> list[Sequence[str]]:
@@ -127,25 +130,6 @@ def _digits_of_ends(pairs: Sequence[Any]) -> list[Sequence[str]]:
 def _digits(values: Sequence[float | None]) -> list[str]:
     """Numbers of a column with the fewest digits that are read as the same number; "" for None."""
     return orjson.dumps(values).decode("ascii")[1:-1].replace("null", "").split(",") if values else []
-
-
-def _csv_text_cell(value: Any) -> str:
-    """Text of a CSV cell, protected from being read as a formula; "" for None."""
-    return "" if value is None else protect_from_formulas(str(value))
-
-
-def _switch_text(value: bool) -> str:
-    """CSV text of a switch, "true" or "false"."""
-    return "true" if value else "false"
-
-
-_CSV_TEXT: Final[dict[str, Callable[[Any], str]]] = {
-    "text": _csv_text_cell,
-    "words": _csv_text_cell,
-    "yes": _switch_text,
-    "tick": _switch_text,
-    "codes": lambda codes: protect_from_formulas("; ".join(codes)),
-}
 
 
 LISTED_NAMES: Final = 20

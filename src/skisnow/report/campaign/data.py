@@ -157,16 +157,15 @@ class ReportData:
         tables = (campaign.density, campaign.drop_cone, campaign.snow_micro_pen)
         samples, cones, recordings = (0 if table is None else len(table.site) for table in tables)
         sites = set(self.sites).union(*(table.site for table in tables if table is not None))
-        used = [
-            Message(" ({used} used)", used=whole(sum(row["used"] for row in rows)))
+        used_pressed, used_sheared = (
+            str(Message(" ({used} used)", used=whole(sum(row["used"] for row in rows))))
             for rows in (self.penetration, self.shear)
-        ]
+        )
+        press = counted(pressed, "{count} penetration experiment", "{count} penetration experiments")
+        shear = counted(sheared, "{count} shear experiment", "{count} shear experiments")
         counts = (
-            (
-                pressed,
-                counted(pressed, "{count} penetration experiment", "{count} penetration experiments") + str(used[0]),
-            ),
-            (sheared, counted(sheared, "{count} shear experiment", "{count} shear experiments") + str(used[1])),
+            (pressed, press + used_pressed),
+            (sheared, shear + used_sheared),
             (samples, counted(samples, "{count} density sample", "{count} density samples")),
             (cones, counted(cones, "{count} drop-cone reading", "{count} drop-cone readings")),
             (recordings, counted(recordings, "{count} recording", "{count} recordings")),
@@ -180,11 +179,13 @@ class ReportData:
         rows = [row for row in self.results["regressions"] if (row["response"], row["terms"][1], row["group"]) == names]
         return rows[0] if rows and rows[0]["b"] is not None else None
 
-    @cached_property
-    def dates(self) -> tuple[str, str] | None:
-        """First and last ISO date in the columns ``time``, None without one."""
+    @property
+    def dates(self) -> str | None:
+        """The only ISO date in the columns ``time``, or the first and last one in words; None without one."""
         days: set[str] = set()
         for table in (self.campaign.penetration, self.campaign.shear, self.campaign.density, self.campaign.drop_cone):
             cells = set(table.further.get("time", ())) if table is not None else set()
             days |= {match[0] for cell in cells if (match := _DATE.match(cell.strip()))}
-        return (min(days), max(days)) if days else None
+        if len(days) < 2:
+            return min(days, default=None)
+        return Message("{low} to {high}", low=min(days), high=max(days))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 from ..._support.messages import Message, joined
 from ...estimation.models import MODELS
@@ -12,7 +12,10 @@ from .data import Json, ReportData
 from .series_tables import EXPERIMENT, SITE, USED
 
 COEFFICIENTS: Final = ("a0", "a1", "b0", "b1")
-_COEFFICIENT_COLUMNS: Final = tuple(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS)
+_COEFFICIENT_COLUMNS: Final = tuple(
+    Column(name, f"{name[0]}_{name[1]}", "estimate", interval=f"{name}_interval") for name in COEFFICIENTS
+)
+_MODEL: Final = Column("row", Message("Model"), "words")
 _RMSE: Final = Column("rmse_N", Message("RMSE with 1/n"), unit="N", digits=4)
 _RMSE_FREE: Final = Column("rmse_free_N", Message("RMSE without the defining reading"), unit="N", digits=4)
 _AT_BOUND: Final = Column("at_bound", Message("on its bound"), "codes")
@@ -50,7 +53,7 @@ def models_table(data: ReportData) -> Table:
     penetration = data.results["penetration"]
     selected_id = penetration["selected"]["id"] if penetration["selected"] else None
     columns = (
-        Column("row", Message("Model"), "words"),
+        _MODEL,
         Column("selected", Message("sel."), "tick"),
         *_COEFFICIENT_COLUMNS,
         _AT_BOUND,
@@ -60,34 +63,24 @@ def models_table(data: ReportData) -> Table:
         _RMSE_FREE,
         Column("printed_rmse_N", Message("paper, printed"), unit="N"),
     )
-    rows = [
-        (
-            model_name(row["id"]),
-            row["id"] == selected_id,
-            *_coefficients(row),
-            *(row[key] for key in ("at_bound", "n_parameters", "rmse_N", "rmse_dof_N", "rmse_free_N")),
-            PRINTED_RMSE_N.get(row["id"]),
-        )
+    note = Message(
+        "b = 1 is fixed, not fitted. The paper's own data are not public: its rmse are for its snow and its loads, not "
+        "a target for others."
+    )
+    records = [
+        _model_record(row) | {"selected": row["id"] == selected_id, "printed_rmse_N": PRINTED_RMSE_N.get(row["id"])}
         for row in penetration["models"]
         if row["n"]
     ]
-    return Table(
+    return record_table(
         "models",
         Message(
             "The nine candidate models F = H (a(ϑ) A + b(ϑ) V) of the penetration force (Eqn 6), with 95 % intervals "
             "from resampling whole experiments, and the rmse printed by Mössner and others (2013)."
         ),
         columns,
-        rows,
-        note=joined(
-            [
-                _UNIT_NOTE,
-                Message(
-                    "b = 1 is fixed, not fitted. The paper's own data are not public: its rmse are for its snow and "
-                    "its loads, not a target for others."
-                ),
-            ]
-        ),
+        records,
+        note=joined([_UNIT_NOTE, note]),
         rows_in_html=_rows_in_html(data),
     )
 
@@ -97,10 +90,12 @@ def _rows_in_html(data: ReportData) -> int:
     return ROWS_IN_HTML if data.results["penetration"]["selected"] else 0
 
 
-def _coefficients(row: Json) -> list[tuple[float | None, Any]]:
-    """Value and interval of each coefficient; None for a coefficient that the model does not have."""
+def _model_record(row: Json) -> Json:
+    """Row of the results with the model in words and intervals by coefficient; None for one that it does not have."""
     forms = {"0": ("one", "constant", "linear"), "1": ("linear",)}
-    return [(row[name] if row[name[0]] in forms[name[1]] else None, row["intervals"][name]) for name in COEFFICIENTS]
+    values = {name: row[name] if row[name[0]] in forms[name[1]] else None for name in COEFFICIENTS}
+    intervals = {f"{name}_interval": row["intervals"][name] for name in COEFFICIENTS}
+    return row | {"row": model_name(row["id"])} | values | intervals
 
 
 def nested_table(data: ReportData) -> Table:
@@ -128,32 +123,22 @@ def nested_table(data: ReportData) -> Table:
 def errors_in_depth_table(data: ReportData) -> Table:
     """Table of each model fitted by both procedures, one below the other."""
     penetration = data.results["penetration"]
-    rows = [
-        (
-            model_name(row["id"]),
-            procedure,
-            *_coefficients(row),
-            *(row[key] for key in ("at_bound", "rmse_N", "rmse_free_N")),
-        )
+    procedure_column = Column("procedure", Message("procedure"), "words")
+    procedures = Message("the paper's"), Message("errors in depth")
+    records = [
+        _model_record(row) | {"procedure": procedure}
         for fits in zip(penetration["models"], penetration["errors_in_depth"]["models"], strict=True)
-        for procedure, row in zip((Message("the paper's"), Message("errors in depth")), fits, strict=True)
+        for procedure, row in zip(procedures, fits, strict=True)
         if row["n"]
     ]
-    return Table(
+    return record_table(
         "errors_in_depth",
         Message(
             "The nine laws by two procedures: the paper's, with H from each series' largest load and all error in the "
             "load; and with errors in depth and load, H estimated from all readings of a series."
         ),
-        (
-            Column("row", Message("Model"), "words"),
-            Column("procedure", Message("procedure"), "words"),
-            *_COEFFICIENT_COLUMNS,
-            _AT_BOUND,
-            _RMSE,
-            _RMSE_FREE,
-        ),
-        rows,
+        (_MODEL, procedure_column, *_COEFFICIENT_COLUMNS, _AT_BOUND, _RMSE, _RMSE_FREE),
+        records,
         note=Message(
             "No intervals with errors in depth: H of each series comes from the same readings, so a bootstrap of whole "
             "experiments says too little of b; in simulated campaigns it covered b in 7 to 90 %. Both rmse are "

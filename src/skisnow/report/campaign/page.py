@@ -171,7 +171,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
         "stated": _stated_uncertainties(results["campaign"]),
         "synthetic": data.synthetic,
-        "dates": _dates(data),
+        "dates": data.dates,
         "analysed": results["provenance"]["time"],
         "headline": headline(data),
         "verdicts": verdicts(results),
@@ -186,14 +186,6 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "titles": SECTIONS,
         "numbers": {name: number for number, name in enumerate(ids, start=1)},
     }
-
-
-def _dates(data: ReportData) -> str | None:
-    """First and last day of the campaign, None without one."""
-    if data.dates is None:
-        return None
-    first, last = data.dates
-    return first if first == last else Message("{low} to {high}", low=first, high=last)
 
 
 def _stated_uncertainties(campaign: dict[str, Any]) -> dict[str, str]:

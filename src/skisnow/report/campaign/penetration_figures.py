@@ -16,22 +16,8 @@ from ..._support.units import MM
 from ...estimation.regressions import PEN_FORCE_KEY
 from ...geometry import in_form
 from ..charts import law_of_series
+from ..figures import style
 from ..figures.drawing import Drawing, LeftOut
-from ..figures.style import (
-    DOUBLE_MM,
-    GREY,
-    SINGLE_MM,
-    SitePlot,
-    SiteStyle,
-    legend_below,
-    logarithmic,
-    mark_synthetic,
-    masks,
-    new_figure,
-    plain_number,
-    scatter,
-    spans_a_decade,
-)
 from ..formatting import p_equals, prose, whole
 from .data import Json, ReportData, numbers, pairs, texts
 from .series_tables import count_resolved_offsets
@@ -41,14 +27,14 @@ _THRESHOLD_MM: Final = 0.1
 _HARDNESS: Final = Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")
 
 
-def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def force_depth(data: ReportData, styles: Sequence[style.SiteStyle]) -> Drawing | LeftOut:
     """Readings of the flat and one edged tool, with F = H_V V as a line for each series (Fig 5)."""
     name = "fig05_force_depth"
     tests = data.campaign.penetration
     angles = shown_angles(data)
     if tests is None or not angles:
         return LeftOut(name, Message("Load against penetration depth"), Message("no penetration experiment is used"))
-    figure = new_figure(width_mm=DOUBLE_MM if len(angles) > 1 else SINGLE_MM, height_mm=80.0)
+    figure = style.new_figure(width_mm=style.DOUBLE_MM if len(angles) > 1 else style.SINGLE_MM, height_mm=80.0)
     panels = figure.subplots(1, len(angles), squeeze=False, sharey=True)[0]
     handles: dict[str, Line2D] = {}
     rows = list(enumerate(data.penetration))
@@ -56,15 +42,15 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
     drawn = [_evenly_spaced(indices, data) for indices in series]
     counts = list(zip(angles, map(len, drawn), map(len, series), strict=True))
     wide_range = any(
-        spans_a_decade(np.array([tests.series(i).penetration_depth.max() for i in some])) for some in drawn
+        style.spans_a_decade(np.array([tests.series(i).penetration_depth.max() for i in some])) for some in drawn
     )
     for panel, angle, indices in zip(panels, angles, drawn, strict=True):
         drawn_sites = _draw_panel(panel, data, indices, styles, wide_range=wide_range)
         handles |= {str(handle.get_label()): handle for handle in drawn_sites}
         panel.set_title(_angle_name(angle), loc="left")
     panels[0].set_ylabel(Message("load $F$ (N)"))
-    mark_synthetic(data, panels[-1])
-    legend_below(figure, [handles[style.label] for style in styles if style.label in handles])
+    style.mark_synthetic(data, panels[-1])
+    style.legend_below(figure, [handles[site_style.label] for site_style in styles if site_style.label in handles])
     n_other = int(data.pressed.used.sum()) - sum(map(len, series))
     caption = _force_caption(counts, n_other, wide_range=wide_range)
     names = [_angle_name(angle) for angle in angles]
@@ -99,7 +85,7 @@ def _evenly_spaced(indices: list[int], data: ReportData) -> list[int]:
 
 
 def _draw_panel(
-    panel: Axes, data: ReportData, indices: list[int], styles: Sequence[SiteStyle], *, wide_range: bool
+    panel: Axes, data: ReportData, indices: list[int], styles: Sequence[style.SiteStyle], *, wide_range: bool
 ) -> list[Line2D]:
     """Draw the readings of series and the law F = H_V V of each; returns the handles of the legend."""
     tests, penetration = data.campaign.penetration, data.analysis.penetration
@@ -110,7 +96,7 @@ def _draw_panel(
     load = np.concatenate([series.load for series in every.values()])
     names = np.array([tests.site[index] for index in indices])
     site = np.repeat(names, [len(series.load) for series in every.values()])
-    for style, mask in masks(styles, names):
+    for site_style, mask in style.masks(styles, names):
         for index in np.array(indices)[mask].tolist():
             series = every[index]
             deepest = float(series.penetration_depth.max())
@@ -118,11 +104,11 @@ def _draw_panel(
             tool = in_form(data.campaign.tools[series.tool], data.analysis.geometry)
             hardness = float(penetration.hardness["H_V"].value[index])
             line = law_of_series(tool, series.edge_angle, hardness, e)
-            panel.plot(*line, color=style.colour, linewidth=0.6, alpha=0.75, zorder=2)
-    handles = scatter(panel, depth, load, site, styles, size=3.0)
+            panel.plot(*line, color=site_style.colour, linewidth=0.6, alpha=0.75, zorder=2)
+    handles = style.scatter(panel, depth, load, site, styles, size=3.0)
     if wide_range:
-        logarithmic(panel, "x", depth)
-        logarithmic(panel, "y", load)
+        style.logarithmic(panel, "x", depth)
+        style.logarithmic(panel, "y", load)
     else:
         panel.set_xlim(0.0, float(depth.max()) * 1.05)
         panel.set_ylim(0.0, float(load.max()) * 1.08)
@@ -153,7 +139,7 @@ def _force_caption(counts: list[tuple[float, int, int]], n_other: int, *, wide_r
     return caption
 
 
-def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def seating_offsets(data: ReportData, styles: Sequence[style.SiteStyle]) -> Drawing | LeftOut:
     """Offset of the depth zero of each series with its interval, against hardness."""
     name, rows = "seating", data.seating
     if not rows:
@@ -165,10 +151,10 @@ def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
     offset, intervals = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
     label = Message("depth offset $\\delta$ (mm)")
     plot = _plot_against_hardness(data, styles, rows, offset, intervals, label)
-    plot.axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+    plot.axes.axhline(0.0, color=style.GREY, linewidth=0.6, zorder=1)
     if np.abs(offset).max() > 10.0 * _THRESHOLD_MM:
         plot.axes.set_yscale("symlog", linthresh=_THRESHOLD_MM, linscale=0.8)
-        plot.axes.yaxis.set_major_formatter(plain_number)
+        plot.axes.yaxis.set_major_formatter(style.plain_number)
     caption = prose(
         "Offset δ of the depth zero of each used series with its 95 % interval, against the hardness: a positive δ is "
         "a gauge that read δ when the tool touched. {shown} of {all} intervals leave out zero; of series without any "
@@ -180,7 +166,7 @@ def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
     return Drawing(name, caption, alt, plot.finish(), points=len(rows))
 
 
-def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def unloading_ratios(data: ReportData, styles: Sequence[style.SiteStyle]) -> Drawing | LeftOut:
     """k_u / H_V of each series with its interval, against hardness."""
     name = "unloading"
     rows = [row for row in data.unloaded if row["used"] and row["unloading_ratio_interval"] is not None]
@@ -193,7 +179,7 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
     plot = _plot_against_hardness(data, styles, rows, ratio, intervals, label)
     if intervals.max() > 10.0 * intervals.min():
         plot.axes.set_yscale("log")
-        plot.axes.yaxis.set_major_formatter(plain_number)
+        plot.axes.yaxis.set_major_formatter(style.plain_number)
     caption = prose(
         "Unloading ratio k_u / H_V of {n} used series with its 95 % interval, against the hardness: 1 is elastic snow, "
         "which springs back; the larger the ratio, the larger the permanent depth of the groove.",
@@ -205,30 +191,30 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
 
 def _plot_against_hardness(
     data: ReportData,
-    styles: Sequence[SiteStyle],
+    styles: Sequence[style.SiteStyle],
     rows: Sequence[Json],
     values: FloatArray,
     ends: FloatArray,
     label: str,
-) -> SitePlot:
+) -> style.SitePlot:
     """Points with intervals ``ends`` over the hardness of their series."""
     hardness = numbers(rows, "H_V_N_per_mm3")
-    plot = SitePlot(data, styles, _HARDNESS, label, height_mm=80.0)
+    plot = style.SitePlot(data, styles, _HARDNESS, label, height_mm=80.0)
     plot.draw(hardness, values, texts(rows, "site"), ends=ends, size=3.0)
     if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
         plot.axes.set_xscale("log")
-        plot.axes.xaxis.set_major_formatter(plain_number)
+        plot.axes.xaxis.set_major_formatter(style.plain_number)
     return plot
 
 
-def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def hardness_density(data: ReportData, styles: Sequence[style.SiteStyle]) -> Drawing | LeftOut:
     """Figure of H_V with intervals against snow density (kg/m³), the paper's Fig 6, or why it is left out."""
     name, title = "fig06_hardness_density", Message("Snow hardness against density")
     if not len(data.pressed):
         return LeftOut(name, title, Message("no penetration experiment is used"))
     if not np.isfinite(data.pressed.density).any():
         return LeftOut(name, title, Message("the campaign gives no snow density at its penetration experiments"))
-    plot = SitePlot(data, styles, Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
+    plot = style.SitePlot(data, styles, Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
     n = _draw_hardness(plot, data.pressed.density)
     caption = prose(
         "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment."
@@ -237,16 +223,16 @@ def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
     return Drawing(name, caption, alt, plot.finish(), points=n)
 
 
-def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def hardness_mean_force(data: ReportData, styles: Sequence[style.SiteStyle]) -> Drawing | LeftOut:
     """Snow hardness with its interval against the mean force of a SnowMicroPen at the same place."""
     name, force = "hardness_mean_force", data.analysis.observations["penetration"].columns[PEN_FORCE_KEY]
     if not np.isfinite(force).any():
         reason = Message("no used recording is at the site of a used penetration experiment")
         return LeftOut(name, Message("Snow hardness against the SnowMicroPen's mean force"), reason)
-    plot = SitePlot(data, styles, Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
+    plot = style.SitePlot(data, styles, Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
     n = _draw_hardness(plot, force)
-    if spans_a_decade(force[np.isfinite(force)]):
-        logarithmic(plot.axes, "x", force)
+    if style.spans_a_decade(force[np.isfinite(force)]):
+        style.logarithmic(plot.axes, "x", force)
     settings = data.results["snow_micro_pen"]
     caption = prose(
         "Snow hardness H_V against the mean force of the SnowMicroPen, {first} to {last} mm below the surface, at the "
@@ -258,13 +244,13 @@ def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawin
     return Drawing(name, caption, alt, plot.finish(), points=n)
 
 
-def _draw_hardness(plot: SitePlot, x: FloatArray) -> int:
+def _draw_hardness(plot: style.SitePlot, x: FloatArray) -> int:
     """Draw H_V with intervals against another quantity; returns the number of points."""
     finite, tests = np.isfinite(x), plot.data.pressed
     hardness, intervals = tests.value[finite], tests.interval[finite]
     plot.draw(x[finite], hardness, tests.site[finite], ends=intervals)
-    if spans_a_decade(hardness):
-        logarithmic(plot.axes, "y", np.concatenate((hardness, intervals[np.isfinite(intervals)])))
+    if style.spans_a_decade(hardness):
+        style.logarithmic(plot.axes, "y", np.concatenate((hardness, intervals[np.isfinite(intervals)])))
     return len(hardness)
 
 

@@ -79,18 +79,14 @@ def _row_verdicts(rows: list[Json], difference: float) -> list[Message]:
             uncertain = [row for row in of_kind if not _is_certain(row)]
             shown = sorted(uncertain, key=lambda row: row["p"] if _is_number(row["p"]) else 2.0)[:MOST_PAIRS]
             if by == "site":
-                sentences.append(_survey_sentence(of_kind, quantity, len(of_kind) - len(uncertain)))
+                won = Counter(row["group_a"] if row["ratio"] > 1.0 else row["group_b"] for row in of_kind)
+                lost = Counter(row["group_b"] if row["ratio"] > 1.0 else row["group_a"] for row in of_kind)
+                names = {"a": won.most_common(1)[0][0], "b": lost.most_common(1)[0][0]}
+                certain = len(of_kind) - len(uncertain)
+                survey = Message(_SURVEY[quantity], certain=certain, pairs=len(of_kind), **names)
+                sentences.append(Message("{survey} (corrected for the number of pairs).", survey=survey))
         sentences += [verdict(row, difference) for row in shown]
     return sentences
-
-
-def _survey_sentence(rows: list[Json], quantity: str, certain: int) -> Message:
-    """Sentence with the number of certain pairs of sites, and the sites with the largest and smallest values."""
-    won = Counter(row["group_a"] if row["ratio"] > 1.0 else row["group_b"] for row in rows)
-    lost = Counter(row["group_b"] if row["ratio"] > 1.0 else row["group_a"] for row in rows)
-    largest, smallest = won.most_common(1)[0][0], lost.most_common(1)[0][0]
-    corrected = Message(_SURVEY[quantity], certain=certain, pairs=len(rows), a=largest, b=smallest)
-    return Message("{survey} (corrected for the number of pairs).", survey=corrected)
 
 
 def _is_number(value: float | None) -> bool:
@@ -111,8 +107,10 @@ def verdict(row: Json, difference_percent: float) -> Message:
     """
     comparison, ends = _comparison(row)
     limit, needed, several = 1.0 + difference_percent / 100.0, row["n_needed"], row["n_pairs"] > 1
-    p = row["p_holm"] if several else row["p"]
-    fields = {"comparison": comparison, "p": _p_text(p) if _is_number(p) else "", "pairs": row["n_pairs"]}
+    p, p_text = row["p_holm"] if several else row["p"], ""
+    if _is_number(p):
+        p_text = Message("p < 0.001") if p < 0.001 else Message("p = {p:.2g}", p=p)
+    fields = {"comparison": comparison, "p": p_text, "pairs": row["n_pairs"]}
     if _is_certain(row):
         if several:
             return Message("{comparison}: certain ({p}, corrected for {pairs} pairs).", **fields)
@@ -137,11 +135,6 @@ def verdict(row: Json, difference_percent: float) -> Message:
             "{uncertain}. The tests suffice to find a difference of {difference:.3g} % in four of five cases."
         )
     return Message(words, uncertain=uncertain, more=more, needed=needed, difference=difference_percent)
-
-
-def _p_text(p: float) -> Message:
-    """Text of a p value, "p < 0.001" if it is below."""
-    return Message("p < 0.001") if p < 0.001 else Message("p = {p:.2g}", p=p)
 
 
 def _comparison(row: Json) -> tuple[Message, tuple[float, float] | None]:

@@ -51,25 +51,18 @@ def course_line(
     axes = figure.add_subplot()
     points = np.concatenate([place[:, :2], [gate.turning for gate in result.course.gates]])
     _draw_gates(axes, result)
-    line = _draw_line(axes, place, values, diverging=diverging)
+    pieces = np.stack([place[:-1, :2], place[1:, :2]], axis=1)
+    middle = 0.5 * (values[:-1] + values[1:])
+    colours = "PuOr_r" if diverging else "viridis"
+    line = LineCollection(list(pieces), array=middle, cmap=colours, linewidth=2.2, zorder=3, capstyle="round")
+    magnitude = np.abs(middle[np.isfinite(middle)])
+    largest = float(magnitude.max()) if magnitude.size else 1.0
+    line.set_clim(-largest if diverging else 0.0, largest or 1.0)
+    axes.add_collection(line)
     _set_axes(axes, points, axes_words)
     figure.colorbar(line, ax=axes, label=label, pad=0.01, aspect=22)
     legend_below(figure, _legend_handles(result))
     return figure
-
-
-def _draw_line(axes: Axes, place: FloatArray, values: FloatArray, *, diverging: bool) -> LineCollection:
-    """Draw the track, coloured by values, and return it; `diverging`: colours symmetric about 0."""
-    pieces = np.stack([place[:-1, :2], place[1:, :2]], axis=1)
-    middle = 0.5 * (values[:-1] + values[1:])
-    colours = "PuOr_r" if diverging else "viridis"
-    line = LineCollection(list(pieces), array=middle, cmap=colours, linewidth=2.2, zorder=3)
-    magnitude = np.abs(middle[np.isfinite(middle)])
-    largest = float(magnitude.max()) if magnitude.size else 1.0
-    line.set_clim(-largest if diverging else 0.0, largest or 1.0)
-    line.set_capstyle("round")
-    axes.add_collection(line)
-    return line
 
 
 def _draw_gates(axes: Axes, result: CourseResult) -> None:

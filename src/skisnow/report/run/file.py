@@ -100,11 +100,8 @@ def _write_variable(file: Any, variable: RunVariable, run: Run) -> None:
     written = file.createVariable(variable.name, "d", variable.dimensions)
     values = np.asarray(variable.values(run), dtype=float)
     written[:] = np.where(np.isfinite(values), values, MISSING)
-    texts = {"units": variable.units, "long_name": variable.meaning, "axis": variable.axis}
-    if SKI in variable.dimensions:
-        texts["coordinates"] = f"{variable.coordinates} ski_name".strip()
-    else:
-        texts["coordinates"] = variable.coordinates
+    coordinates = f"{variable.coordinates} ski_name".strip() if SKI in variable.dimensions else variable.coordinates
+    texts = {"units": variable.units, "long_name": variable.meaning, "axis": variable.axis, "coordinates": coordinates}
     if variable.axis == "Z":
         texts["positive"] = "up"
     for name, text in texts.items():

@@ -25,6 +25,12 @@ LABELS: Final = {
     "east_north_up": (Message("east (m)"), Message("north (m)")),
     "slope": (Message("distance down the fall line $x$ (m)"), Message("to the left $y$ (m)")),
 }
+_HEIGHT_LABELS: Final = {
+    "file": "$z$ (m)",
+    "east_north_up": Message("height above\nthe origin (m)"),
+    "slope": Message("out of the slope\n$z$ (m)"),
+}
+_RADIUS_LABEL: Final = Message("turn radius (m),\nleft above, right below")
 _MARGIN: Final = 0.04
 _LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
 _FRAME_MM: Final = 26.0
@@ -64,9 +70,7 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
         return figure
     reach = curvature_reach(summary)
     line.set_clim(-reach, reach)
-    bar = figure.colorbar(
-        line, ax=axes, label=Message("turn radius (m),\nleft above, right below"), pad=0.01, aspect=22
-    )
+    bar = figure.colorbar(line, ax=axes, label=_RADIUS_LABEL, pad=0.01, aspect=22)
     ticks, labels = _radius_ticks(reach)
     bar.set_ticks(ticks, labels=labels)
     return figure
@@ -174,18 +178,19 @@ def track_along(summary: TrackSummary) -> Figure:
     unit = KILOMETRE if arc_length[-1] > _IN_KILOMETRES else 1.0
     _draw_speed(grid[0], summary, numbers, arc_length / unit)
     if with_height:
-        _draw_height(grid[1], summary, numbers, arc_length / unit)
+        height = _with_gaps(summary, numbers, summary.track.place[:, 2])
+        grid[1].plot(arc_length[numbers] / unit, height, color=BLUE, linewidth=0.8)
+        grid[1].set_ylabel(_HEIGHT_LABELS[summary.track.axes])
     _draw_radius(grid[-1], summary, arc_length / unit)
-    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label=Message("track"))]
-    handles.append(Patch(facecolor=PALE, alpha=0.7, label=Message("95 % interval of the radius, noise alone")))
+    noise = Patch(facecolor=PALE, alpha=0.7, label=Message("95 % interval of the radius, noise alone"))
+    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label=Message("track")), noise]
     if len(summary.day.runs) > 1 or summary.day.lifts:
         handles.append(Patch(facecolor=SKY, alpha=0.3, label=Message("runs")))
         for axes, run in product(grid, summary.day.runs):
             ends = arc_length[[run.first, run.last]] / unit
             axes.axvspan(*ends.tolist(), color=SKY, alpha=0.16, linewidth=0.0, zorder=0)
-    grid[-1].set_xlabel(
-        Message("distance along the track (km)") if unit == KILOMETRE else Message("distance along the track (m)")
-    )
+    in_km = unit == KILOMETRE
+    grid[-1].set_xlabel(Message("distance along the track (km)") if in_km else Message("distance along the track (m)"))
     grid[-1].set_xlim(0.0, float(arc_length[-1]) / unit)
     figure.align_ylabels()
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
@@ -210,22 +215,8 @@ def _draw_speed(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length
     axes.plot(arc_length[numbers], speed, color=BLUE, linewidth=0.8)
     highest = summary.max_speed_interval[1] if summary.max_speed_interval else summary.max_speed or 0.0
     axes.set_ylim(0.0, 1.1 * max(highest, 0.1))
-    axes.set_ylabel(
-        Message("speed (m/s),\nas recorded")
-        if summary.motion.speed_source == "recorded"
-        else Message("speed (m/s),\nfrom the places")
-    )
-
-
-def _draw_height(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length: FloatArray) -> None:
-    """Draw the third coordinate (m) over the arc length (m), labelled by the axes of the track."""
-    axes.plot(arc_length[numbers], _with_gaps(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
-    words = {
-        "east_north_up": Message("height above\nthe origin (m)"),
-        "slope": Message("out of the slope\n$z$ (m)"),
-        "file": "$z$ (m)",
-    }
-    axes.set_ylabel(words[summary.track.axes])
+    is_recorded = summary.motion.speed_source == "recorded"
+    axes.set_ylabel(Message("speed (m/s),\nas recorded") if is_recorded else Message("speed (m/s),\nfrom the places"))
 
 
 def _draw_radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
@@ -240,7 +231,7 @@ def _draw_radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> N
     axes.axhline(0.0, color=GREY, linewidth=0.5, zorder=1)
     axes.set_ylim(-reach, reach)
     axes.set_yticks(*_radius_ticks(reach))
-    axes.set_ylabel(Message("turn radius (m),\nleft above, right below"))
+    axes.set_ylabel(_RADIUS_LABEL)
 
 
 def _ridden_curvature(summary: TrackSummary) -> FloatArray:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -20,20 +19,9 @@ from ...comparison.distances import DistanceStatistics, OffsetSeries
 from ...track.course import CourseResult
 from ...track.course.gates_table import gates_csv
 from ...track.summary import TrackSummary, summary_dict
+from ..figures import style
 from ..figures.course import course_line
 from ..figures.drawing import Drawing, Progress, picture_files, silent, write_pictures
-from ..figures.style import (
-    BLACK,
-    BLUE,
-    DOUBLE_MM,
-    GREEN,
-    PALE,
-    PURPLE,
-    VERMILLION,
-    legend_below,
-    new_figure,
-    plain_number,
-)
 from ..formatting import figure_text, json_text, prose, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 from .figures import LABELS, coloured_map, drawn_points, track_along, track_map
@@ -80,22 +68,6 @@ def write_track_report(
     return folder / "track.json"
 
 
-def _estimates(summary: TrackSummary) -> Markup:
-    """Maximum speed and length with their intervals; empty if the device recorded them."""
-    if summary.max_speed_interval is None or summary.distance_interval is None:
-        return Markup()
-    return prose(
-        " Highest speed: {speed:.4g} m/s (95 % interval {slow:.4g} to {fast:.4g} m/s); length: {length:.5g} m "
-        "({short:.5g} to {long:.5g} m).",
-        speed=summary.max_speed,
-        slow=summary.max_speed_interval[0],
-        fast=summary.max_speed_interval[1],
-        length=summary.distances["places"],
-        short=summary.distance_interval[0],
-        long=summary.distance_interval[1],
-    )
-
-
 def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> Iterator[Drawing]:
     """All figures in order; each is drawn when it is requested, so that it gets the style in force."""
     name = summary.track.name
@@ -113,8 +85,15 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
         name=name,
         half=summary.motion.smoothed.resolution.half_period,
     )
+    if summary.max_speed_interval is not None and summary.distance_interval is not None:
+        (slow, fast), (short, long) = summary.max_speed_interval, summary.distance_interval
+        caption += prose(
+            " Highest speed: {speed:.4g} m/s (95 % interval {slow:.4g} to {fast:.4g} m/s); length: {length:.5g} m "
+            "({short:.5g} to {long:.5g} m).",
+            speed=summary.max_speed, slow=slow, fast=fast, length=summary.distances["places"], short=short, long=long,
+        )  # fmt: skip
     alt = Message("Speed, height and turn radius along {name}.", name=name)
-    yield Drawing("along", caption + _estimates(summary), alt, track_along(summary), wide=True)
+    yield Drawing("along", caption, alt, track_along(summary), wide=True)
     if gates is not None:
         caption = prose("The line of {name} over the course, from above; colour: speed.", name=name)
         alt = Message("Line of {name} over the gates, coloured by speed.", name=name)
@@ -123,13 +102,13 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
         yield Drawing("course", caption, alt, figure, wide=True)
 
 
-MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.1}
-SIMULATED: Final[dict[str, Any]] = {"color": VERMILLION, "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
-BEFORE: Final[dict[str, Any]] = {"color": PALE, "linewidth": 0.8}
+MEASURED: Final[dict[str, Any]] = {"color": style.BLACK, "linewidth": 1.1}
+SIMULATED: Final[dict[str, Any]] = {"color": style.VERMILLION, "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
+BEFORE: Final[dict[str, Any]] = {"color": style.PALE, "linewidth": 0.8}
 LINE_STYLES: Final[dict[str, dict[str, Any]]] = {
-    "nearest": {"color": BLUE, "linestyle": "-"},
-    "arc_length": {"color": GREEN, "linestyle": (0, (5, 1.5))},
-    "time": {"color": PURPLE, "linestyle": (0, (1, 1))},
+    "nearest": {"color": style.BLUE, "linestyle": "-"},
+    "arc_length": {"color": style.GREEN, "linestyle": (0, (5, 1.5))},
+    "time": {"color": style.PURPLE, "linestyle": (0, (1, 1))},
 }
 EXACTNESS: Final = 1e-6  # distance (m) below which two places are equal
 _HIDES: Final = 20.0
@@ -146,13 +125,13 @@ def track_comparison(comparison: Comparison) -> Figure:
     points = np.concatenate([line.place[:, :2] for line in lines])
     limits = track_limits(points, margin=0.6 + _MARGIN * float(np.ptp(points, axis=0).max()))
     height = plan_height_mm(limits)
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
+    figure = style.new_figure(width_mm=style.DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
     plan = figure.add_subplot(grid[0])
     _draw_plan(plan, comparison)
     plan_axes(plan, limits, labels=None if comparison.axes == "slope" else LABELS[comparison.axes])
     _draw_distances(figure.add_subplot(grid[1]), comparison)
-    legend_below(figure, _legend_handles(comparison))
+    style.legend_below(figure, _legend_handles(comparison))
     return figure
 
 
@@ -202,7 +181,7 @@ def _draw_distances(axes: Axes, comparison: Comparison) -> None:
     if largest and max(largest) > _HIDES * min(largest):
         axes.set_yscale("log")
         axes.set_ylim(0.01 * min(largest), 2.0 * max(largest))
-        axes.yaxis.set_major_formatter(plain_number)
+        axes.yaxis.set_major_formatter(style.plain_number)
     else:
         axes.set_ylim(bottom=0.0)
     if comparison.axes != "slope":  # two files: both may be measured

@@ -19,19 +19,7 @@ from ...comparison.distances import arc_lengths
 from ...comparison.nearest_place import distance_from_path
 from ...scenario import Plane
 from ...simulation.run import Run
-from ..figures.style import (
-    BLACK,
-    BLUE,
-    DOUBLE_MM,
-    GREY,
-    PALE,
-    SKY,
-    VERMILLION,
-    label_time,
-    legend_below,
-    line_style,
-    new_figure,
-)
+from ..figures import style
 from ..formatting import figure_text
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
 
@@ -57,7 +45,7 @@ def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     aside, ahead = offsets(nominal, tracks)
     limits = track_limits(np.concatenate([np.stack([t.x, t.y], axis=1) for t in (nominal, *tracks)]))
     height = plan_height_mm(limits)
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 78.0)
+    figure = style.new_figure(width_mm=style.DOUBLE_MM, height_mm=height + 78.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 50.0))
     plan = figure.add_subplot(grid[0, :])
     _draw_plan(plan, nominal, tracks, band_of(aside))
@@ -67,14 +55,14 @@ def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     for column, (values, label) in enumerate(zip((aside, ahead), labels, strict=True)):
         _draw_over_time(figure.add_subplot(grid[1, column]), nominal.time, values, label)
     handles = [
-        Line2D([], [], color=VERMILLION, label=Message("nominal run")),
-        Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label=Message("median")),
-        Line2D([], [], color=SKY, alpha=0.6, linewidth=5.0, label=Message("half of the runs")),
-        Line2D([], [], color=PALE, alpha=0.6, linewidth=5.0, label=Message("90 % of the runs")),
-        Line2D([], [], color=GREY, linewidth=0.5, label=Message("each of {count} runs", count=len(tracks))),
-        Line2D([], [], color=BLACK, linestyle="none", marker=".", markersize=2.0, label=Message("end")),
+        Line2D([], [], color=style.VERMILLION, label=Message("nominal run")),
+        Line2D([], [], color=style.BLUE, linestyle=(0, (4, 1.5)), label=Message("median")),
+        Line2D([], [], color=style.SKY, alpha=0.6, linewidth=5.0, label=Message("half of the runs")),
+        Line2D([], [], color=style.PALE, alpha=0.6, linewidth=5.0, label=Message("90 % of the runs")),
+        Line2D([], [], color=style.GREY, linewidth=0.5, label=Message("each of {count} runs", count=len(tracks))),
+        Line2D([], [], color=style.BLACK, linestyle="none", marker=".", markersize=2.0, label=Message("end")),
     ]
-    legend_below(figure, handles)
+    style.legend_below(figure, handles)
     return figure
 
 
@@ -109,26 +97,26 @@ def _draw_plan(axes: Axes, nominal: TimedTrack, tracks: Sequence[TimedTrack], ba
     slope = np.unwrap(np.arctan2(np.gradient(nominal.y), np.gradient(nominal.x)))
     to_left = np.stack([-np.sin(slope), np.cos(slope)], axis=1)
     outline = np.stack([nominal.x, nominal.y], axis=1) + band[:, :, None] * to_left  # shape (5, n, 2)
-    for (low, high), colour in zip(((0, 4), (1, 3)), (PALE, SKY), strict=True):
+    for (low, high), colour in zip(((0, 4), (1, 3)), (style.PALE, style.SKY), strict=True):
         finite = np.isfinite(outline[low, :, 0])
         rim = np.concatenate([outline[low, finite], outline[high, finite][::-1]])
         axes.fill(rim[:, 0], rim[:, 1], color=colour, alpha=0.6, linewidth=0, zorder=1)
     for track in tracks:
-        axes.plot(track.x, track.y, color=GREY, linewidth=0.3, zorder=2)
-        axes.plot(track.x[-1], track.y[-1], marker=".", markersize=2.0, color=GREY, zorder=2)
-    axes.plot(outline[2, :, 0], outline[2, :, 1], color=BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
-    axes.plot(nominal.x, nominal.y, color=VERMILLION, linewidth=1.0, zorder=4)
+        axes.plot(track.x, track.y, color=style.GREY, linewidth=0.3, zorder=2)
+        axes.plot(track.x[-1], track.y[-1], marker=".", markersize=2.0, color=style.GREY, zorder=2)
+    axes.plot(outline[2, :, 0], outline[2, :, 1], color=style.BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
+    axes.plot(nominal.x, nominal.y, color=style.VERMILLION, linewidth=1.0, zorder=4)
 
 
 def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str) -> None:
     """Draw values of each run (runs, n) over time, with their band and a line at 0."""
     band = band_of(values)
-    axes.plot(time, values.T, color=GREY, linewidth=0.3, zorder=2)
-    axes.fill_between(time, band[0], band[4], color=PALE, alpha=0.6, linewidth=0, zorder=1)
-    axes.fill_between(time, band[1], band[3], color=SKY, alpha=0.6, linewidth=0, zorder=1)
-    axes.plot(time, band[2], color=BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
-    axes.axhline(0.0, color=VERMILLION, linewidth=0.8, zorder=3)
-    label_time(axes, time)
+    axes.plot(time, values.T, color=style.GREY, linewidth=0.3, zorder=2)
+    axes.fill_between(time, band[0], band[4], color=style.PALE, alpha=0.6, linewidth=0, zorder=1)
+    axes.fill_between(time, band[1], band[3], color=style.SKY, alpha=0.6, linewidth=0, zorder=1)
+    axes.plot(time, band[2], color=style.BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
+    axes.axhline(0.0, color=style.VERMILLION, linewidth=0.8, zorder=3)
+    style.label_time(axes, time)
     axes.set_ylabel(label)
 
 
@@ -140,18 +128,21 @@ def draw_runs(runs: Mapping[str, Run]) -> Figure:
     named = list(runs.items())
     limits = track_limits(np.concatenate([run.place for run in runs.values()]))
     height = plan_height_mm(limits)
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 90.0)
+    figure = style.new_figure(width_mm=style.DOUBLE_MM, height_mm=height + 90.0)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 62.0))
     plan = figure.add_subplot(grid[0, :])
     for place, (_, run) in enumerate(named):
-        plan.plot(run.place[:, 0], run.place[:, 1], **line_style(place))
-        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=line_style(place)["color"])
+        plan.plot(run.place[:, 0], run.place[:, 1], **style.line_style(place))
+        plan.plot(
+            *run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=style.line_style(place)["color"]
+        )
     plan_axes(plan, limits, profile=not isinstance(named[0][1].scenario.slope, Plane))
     _draw_distances(figure.add_subplot(grid[1, 0]), named)
     moment = 0.9 * min(run.simulated_s for run in runs.values())
     _draw_depths(figure.add_subplot(grid[1, 1]), named, moment)
-    legend_below(
-        figure, [Line2D([], [], label=mathtext(name), **line_style(place)) for place, (name, _) in enumerate(named)]
+    style.legend_below(
+        figure,
+        [Line2D([], [], label=mathtext(name), **style.line_style(place)) for place, (name, _) in enumerate(named)],
     )
     return figure
 
@@ -169,7 +160,7 @@ def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     """Draw the distance (m) of each run from the track of the first, along its own track."""
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
-        axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **line_style(place))
+        axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **style.line_style(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(Message("distance travelled (m)"))
@@ -182,11 +173,11 @@ def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> Non
     ski = int(loaded_skis(reference)[_nearest_time_index(reference, moment)])
     for place, (_, run) in enumerate(named):
         axes.plot(
-            run.skis.station, run.skis.edge_depth[_nearest_time_index(run, moment), ski] / MM, **line_style(place)
+            run.skis.station, run.skis.edge_depth[_nearest_time_index(run, moment), ski] / MM, **style.line_style(place)
         )
     deepest = max(float(np.nanmax(run.skis.edge_depth[_nearest_time_index(run, moment), ski])) for _, run in named) / MM
-    axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
-    axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
+    axes.axhline(0.0, color=style.GREY, linewidth=0.6, zorder=1)
+    axes.axvline(0.0, color=style.PALE, linewidth=0.5, zorder=0)
     axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
     axes.set_xlabel(Message("position along the ski (m); boot = 0, tail left, tip right"))
     sides = (Message("edge depth (mm), left ski,\nat {moment:.2f} s", moment=moment),
