@@ -75,8 +75,19 @@ def test_a_restored_motion_goes_on_with_its_bits_and_a_row_has_every_part() -> N
     assert np.array_equal(rows[0], rows[1])
     assert dynamics.advance(0.1) is Ended.REACHED
     parts = moment_parts(dynamics.moment, dynamics.body.skis)
-    for name in ("time", "position", "rotation", "boots", "boot_wrench"):
+    for name in ("time", "position", "rotation", "velocity", "boots", "boot_wrench"):
         assert np.array_equal(parts[name], getattr(dynamics, name)), name
+    assert type(dynamics.time) is float
+    assert dynamics.touches is True
+    assert len(dynamics.counts) == 5
+    both = moment_parts(np.stack([rows[0], rows[1]]), dynamics.body.skis)
+    nodes, unknowns = len(dynamics.contact.runners[0].nodes), len(dynamics.body.skis[0].mass)
+    assert {name: part.shape for name, part in both.items()} == {
+        "time": (2,), "position": (2, 3), "rotation": (2, 3, 3), "velocity": (2, 6), "energies": (2, 3),
+        "snow_energies": (2, 4), "snow_losses": (2, 5), "work": (2, 6), "work_given": (2, 2), "pushes": (2, 2, 3),
+        "along": (2, 2, 3, nodes), "beam_dofs": (2, 2, unknowns), "boots": (2, 2, 6, 3), "boot_wrench": (2, 2, 6),
+    }  # fmt: skip
+    assert sum(part[0].size for part in both.values()) == len(rows[0])
 
 
 def weightless(body: Body) -> Body:
@@ -193,5 +204,56 @@ def test_what_cannot_move_is_refused() -> None:
         BootMotion(1.0, 1.0, pose, pose)
     with raises(ParameterError, "out_of_range", degrees=90.0):
         BootMotion(0.0, 1.0, pose, BootPose.of(pose.place, SLEDGE.edge_angle, 0.0, np.pi / 2.0))
-    with raises(ParameterError, "not_a_rotation"):
-        BootPose(np.zeros(3), np.eye(3) * 1.1)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 57.2, 57.4, 120.0, 180.0])
+def test_a_boot_turns_by_a_radian_at_most(degrees: float) -> None:
+    """From poses whose axes are rounded: their product may exceed 1 or fall below -1."""
+    for edge_angle in np.linspace(-1.0, 1.0, 9):
+        first = BootPose.of(np.zeros(3), edge_angle, 0.3, 0.1)
+        turn = axes_of(0.0, 0.0, np.radians(degrees))
+        last = BootPose(first.place, first.axes @ turn)
+        if degrees < 57.3:
+            assert BootMotion(0.5, 2.0, first, last).numbers[:2].tolist() == [0.5, 2.0]
+            continue
+        with raises(ParameterError, "out_of_range", start=0.5, end=2.0, limit=np.degrees(1.0)) as caught:
+            BootMotion(0.5, 2.0, first, last)
+        assert caught.value.fields["degrees"] == pytest.approx(degrees, abs=1e-4)
+
+
+def test_axes_of_a_boot_are_right_handed_and_orthonormal() -> None:
+    """Off by a millionth in one condition of six at a time; by a ten-thousandth of that they are accepted."""
+    ahead_, left, off = axes_of(0.4, 0.3, 0.2)
+
+    def axes(by: float) -> list[FloatArray]:
+        longer, broader, skew = (1.0 + by) * ahead_, (1.0 + by) * left, left + by * ahead_
+        pairs = [(longer, left), (ahead_, broader), (ahead_, skew)]
+        thirds = [off + by * axis for axis in np.eye(3)]
+        return [np.array([a, b, np.cross(a, b)]) for a, b in pairs] + [np.array([ahead_, left, c]) for c in thirds]
+
+    for good, bad, size in zip(axes(1e-10), axes(1e-6), (2e-6, 2e-6, 1e-6, 1e-6, 1e-6, 1e-6), strict=True):
+        assert BootPose(np.zeros(3), good).axes.tolist() == good.tolist()
+        with raises(ParameterError, "not_a_rotation") as caught:
+            BootPose(np.zeros(3), bad)
+        assert caught.value.fields["off"] == pytest.approx(size, rel=1e-5)
+    with raises(ParameterError, "not_a_rotation", off=2.0):
+        BootPose(np.zeros(3), np.diag([1.0, 1.0, -1.0]))
+
+
+@pytest.mark.parametrize("name", ["place", "axes", "velocity", "turning"])
+def test_numbers_of_a_boot(name: str) -> None:
+    pose = BootPose(*map(np.array, ([1.0, 2.0, 3.0], np.eye(3), [3.0, 4.0, 0.0], [0.0, 0.0, 0.5])))
+    shape = "(3, 3)" if name == "axes" else "(3,)"
+    with raises(ParameterError, "wrong_shape", name=f"BootPose: {name}", shape="(2,)", needed=shape):
+        replace(pose, **{name: np.zeros(2)})
+    assert pose.numbers.tolist() == [1, 2, 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 4, 0, 0, 0, 0.5]
+    at_rest = BootPose.of([1.0, 2.0, 3.0], 0.0)
+    assert at_rest.numbers.tolist() == [1, 2, 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, *[0] * 6]
+
+
+def test_a_boot_is_shown_with_its_angles_and_speeds() -> None:
+    """In degrees."""
+    axes = axes_of(np.radians(30.0), np.radians(20.0), np.radians(10.0))
+    shown = repr(BootPose(np.array([1.0, 2.0, 3.0]), axes, np.array([3.0, 4.0, 0.0]), np.array([0.0, 0.0, 0.5])))
+    parts = ("edge 30°", "pitch 20°", "heading 10°", "5 m/s", "0.5 rad/s", "(1, 2, 3) m")
+    assert [part for part in parts if part not in shown] == []

@@ -119,6 +119,12 @@ def test_lengths_and_tolerances(name: str, value: float) -> None:
 def test_shortest_above_longest_and_a_first_step_is_no_longer_than_the_longest() -> None:
     with raises(ParameterError, "out_of_range", shortest=0.01, longest=0.006):
         StepControl(shortest=0.01)
+    rule = StepControl(shortest=0.006).compiled()
+    values = rule.first, rule.fixed, rule.tolerance, rule.longest, rule.shortest, rule.closeness
+    assert values == (1e-4, False, 1e-6, 6e-3, 6e-3, 0.2)
+    rule = StepControl(first=0.1, fixed=True, tolerance=0.2, longest=0.03, shortest=0.01, closeness=0.5).compiled()
+    values = rule.first, rule.fixed, rule.tolerance, rule.longest, rule.shortest, rule.closeness
+    assert values == (0.1, True, 0.2, 0.03, 0.01, 0.5)
     # So a glide that accepts every step takes none longer.
     scenario = given(start__speed_m_per_s=1.0, snow__shear_displacement_mm=0.5)  # loose enough for long steps
     dynamics = started(scenario, StepControl(first=0.5, longest=1e-3, tolerance=1.0, closeness=1e-9))
@@ -164,8 +170,11 @@ def test_velocity() -> None:
 @pytest.mark.parametrize(
     ("wrong", "expected"),
     [
-        ({"inertia": np.eye(3)}, coded("wrong_shape", name="Body: inertia", shape="(3, 3)")),
+        ({"inertia": np.eye(3)}, coded("wrong_shape", name="Body: inertia", shape="(3, 3)", needed="(6, 6)")),
+        ({"first_moment": np.eye(2)}, coded("wrong_shape", name="Body: first_moment", needed="(3,)")),
         ({"gravity": np.array([0.0, 0.0, math.nan])}, coded("not_a_number", name="Body: gravity")),
+        ({"drag": np.zeros(1)}, coded("wrong_shape", name="Body: drag", needed="()")),
+        ({"drag_height": np.zeros(1)}, coded("wrong_shape", name="Body: drag_height", needed="()")),
         ({"mass": math.inf}, coded("not_a_number", name="Body: mass")),
         ({"skis": ()}, coded("missing")),
     ],
@@ -185,10 +194,26 @@ def cut(body: Body, name: str) -> dict[str, Any]:
         (cut(BODY, "stiffness"), coded("wrong_shape", name="FlexibleSki: stiffness", shape="(99, 6)")),
         (cut(BODY, "coupling"), coded("wrong_shape", name="FlexibleSki: coupling", shape="(99, 6)")),
         (cut(BODY, "unknown"), coded("wrong_shape", n_free=31, n=102)),
-        ({"boot": np.zeros(2)}, coded("wrong_shape", name="FlexibleSki: boot", shape="(2,)")),
+        ({"boot": np.zeros(2)}, coded("wrong_shape", name="FlexibleSki: boot", shape="(2,)", needed="(3,)")),
+        ({"axes": np.eye(2)}, coded("wrong_shape", name="FlexibleSki: axes", shape="(2, 2)", needed="(3, 3)")),
+        ({"mass": np.zeros((102, 3))}, coded("wrong_shape", name="FlexibleSki: mass", needed="(102, 6)")),
+        ({"unknown": np.zeros((35, 1))}, coded("wrong_shape", name="FlexibleSki: unknown", needed="(35,)")),
+        ({"inertia": np.eye(3)}, coded("wrong_shape", name="FlexibleSki: inertia", needed="(6, 6)")),
+        ({"inertia": np.full((6, 6), math.nan)}, coded("not_a_number", name="FlexibleSki: inertia")),
         ({"damping": math.nan}, coded("not_a_number", name="FlexibleSki: damping")),
     ],
 )
 def test_skis(wrong: dict[str, Any], expected: Coded) -> None:
     with raises(ParameterError, expected):
         replace(BODY.skis[0], **wrong)
+
+
+@pytest.mark.parametrize(("rows", "unknown"), [(4, [0, 3]), (6, [0, 0]), (6, [0, 3, 6]), (6, [-1, 3]), (6, [1, 4])])
+def test_unknowns_of_nodes(rows: int, unknown: list[int]) -> None:
+    """Three for each free node in any order, -1 for a clamped one."""
+    band = {name: np.ones((rows, 6)) for name in ("mass", "stiffness", "coupling")}
+    with raises(ParameterError, "wrong_shape", n_free=sum(each >= 0 for each in unknown), n=rows):
+        replace(BODY.skis[0], **band, unknown=np.array(unknown))
+    band = {name: np.ones((6, 6)) for name in band}
+    ski = replace(BODY.skis[0], **band, unknown=np.array([3, -1, 0]), inertia=None)
+    assert ski.unknown.tolist() == [3, -1, 0]
