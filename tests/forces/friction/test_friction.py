@@ -1,6 +1,7 @@
 """Laws of glide friction: physics, exact values, and laws of a file."""
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -229,11 +230,42 @@ def test_published_values_of_skis() -> None:
 
 
 def test_snow_beyond_the_states_is_warned_of(tmp_path: Path) -> None:
-    law = read_friction_file(law_file(tmp_path))
-    with warns(RangeWarning, "outside_measured", quantity="snow temperature", value=-25.0):
+    path = law_file(tmp_path)
+    law, of = read_friction_file(path), {"source": "a test", "relation": str(path)}
+    with warns(RangeWarning, "outside_measured", quantity="snow temperature", value=-25.0, lowest=-20.0, **of):
         law.warn_outside(-25.0, 0.0, (2.0, 10.0))
-    with warns(RangeWarning, "outside_measured", quantity="liquid water", value=8.0):
+    with warns(RangeWarning, "outside_measured", quantity="snow temperature", value=0.5, highest=0.0, unit="°C", **of):
+        law.warn_outside(0.5, 0.0, (2.0, 10.0))
+    with warns(RangeWarning, "outside_measured", quantity="liquid water", value=8.0, highest=5.0, unit="%", **of):
         law.warn_outside(0.0, 8.0, (2.0, 10.0))
+    with warns(RangeWarning, "outside_measured", quantity="liquid water", value=-0.5, lowest=0.0):
+        law.warn_outside(0.0, -0.5, (2.0, 10.0))
+    for beyond in ((0.9, 20.0), (1.0, 20.5)):
+        with warns(RangeWarning, "outside_measured", quantity="speed", lowest=1.0, highest=20.0, unit="m/s", **of):
+            law.warn_outside(None, 99.0, beyond)  # without a temperature only speeds are compared
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        law.warn_outside(None, 99.0, (1.0, 20.0))
+        law.warn_outside(-20.0, 0.0, (1.0, 20.0))
+        law.warn_outside(0.0, 5.0, (1.0, 20.0))
+        read_friction_file(KUROIWA).warn_outside(-50.0, 30.0, (5.0, 22.0))
+
+
+def test_a_single_state_may_have_a_temperature(tmp_path: Path) -> None:
+    """Then it holds for any snow that has one; without, the temperature has no effect."""
+    end = STATES.index("[[state]]\ntemperature_C = -4")
+    cold = read_friction_file(law_file(tmp_path, STATES[:end]))
+    assert cold.at(-4.0) == cold.at(0.0, 20.0) == WaterFilmFriction(0.04, 0.08, 2.0, 0.0)
+    with raises(ParameterError, "missing", path=cold.path):
+        cold.at(None)
+    with raises(ParameterError, "contradiction", water=1.0, temperature=-4.0):
+        cold.at(-4.0, 1.0)
+    wet = STATES[:end].replace("-20", "0\nliquid_water_percent = 0.5")
+    assert read_friction_file(law_file(tmp_path, wet)).states[0].wetness == 0.5
+    with raises(ParameterError, "contradiction"):
+        read_friction_file(law_file(tmp_path, wet.replace("temperature_C = 0\n", "")))
+    law = read_friction_file(law_file(tmp_path, STATES[:end].replace("temperature_C = -20\n", "")))
+    assert law.at(None) == law.at(-30.0) == law.at(0.0, 3.0) == WaterFilmFriction(0.04, 0.08, 2.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -248,6 +280,14 @@ def test_snow_beyond_the_states_is_warned_of(tmp_path: Path) -> None:
         ("[1, 20]", "[20, 1]", "out_of_range"),
         ("[[state]]", "[[states]]", "unknown_name"),
         ('source = "a test"', "", "missing"),
+        ("[1, 20]", "[1, 20, 30]", "out_of_range"),
+        ("[1, 20]", "[20, 20]", "out_of_range"),
+        ("temperature_C = -20", "temperature_C = -4", "out_of_order"),
+        ("temperature_C = 0\nliquid_water_percent = 5", "temperature_C = -4", "out_of_order"),
+        (STATES[STATES.index("[[state]]") :], "", "out_of_order"),
+        (STATES[STATES.index("[[state]]") :], "state = 1", "wrong_kind"),
+        (STATES[STATES.index("[[state]]") :], "state = [1]", "wrong_kind"),
+        (STATES[STATES.index("[[state]]") :], "[state]\nmu = 0.04", "wrong_kind"),
     ],
 )
 def test_faults_are_named(tmp_path: Path, old: str, new: str, code: str) -> None:
