@@ -1,6 +1,8 @@
 """Import of workbooks in everyday layouts: the right numbers, or an error that names the option."""
 
+import hashlib
 import io
+import tomllib
 from collections.abc import Callable
 from typing import Any
 
@@ -87,7 +89,36 @@ def test_everyday_workbook_needs_no_answer() -> None:
     campaign = campaign_of_files(proposal.files)
     assert campaign.gauge_resolution == pytest.approx(1e-5)
     assert campaign.observers == ("A", "B")
-    assert proposal.files["original/Hang.xlsx"] == bytes_of(everyday()) or proposal.files["original/Hang.xlsx"]
+    assert read_sheets(FILE, proposal.files["original/Hang.xlsx"]) == read_sheets(FILE, bytes_of(everyday()))
+    rows = ["experiment,site,tool,edge_angle_deg,load_N,depth_mm,time,remark"]
+    for name, angle, mass, depth in (
+        (1, 30, 10, 0.63), (1, 30, 20, 0.89), (1, 30, 50, 1.41), (2, 45, 10, 0.72), (2, 45, 20, 1.03), (2, 45, 50, 1.59)
+    ):  # fmt: skip
+        rows.append(f"{name},Hang oben,ski 200 x 62 mm,{angle},{mass * G:.10g},{depth},2026-02-14,")
+    assert proposal.files["penetration.csv"].decode().splitlines() == rows
+    assert proposal.files["shear.csv"].decode().splitlines() == [
+        "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm,time",
+        "S1,Hang oben,100 mm,90,5.8,250,23.1,2026-02-14",
+    ]
+    head = tomllib.loads(proposal.files["campaign.toml"].decode())
+    template = head.pop("import")
+    assert head == {
+        "name": "Hang", "observers": ["A", "B"], "gauge_resolution_mm": 0.01,
+        "tool": [{"name": "ski 200 x 62 mm", "shape": "ski", "length_mm": 200, "width_mm": 62}],
+        "plate": [{"name": "100 mm", "length_mm": 100}],
+    }  # fmt: skip
+    assert [note[: note.index(":")] for note in template["notes"]] == [
+        *(f"Hang oben, {row}" for row in (1, 2, 4, 14)), "Notizen, 1",
+    ]  # fmt: skip
+    assert template["sha256"] == hashlib.sha256(proposal.files["original/Hang.xlsx"]).hexdigest()
+    assert [row.source for row in proposal.tables[0].rows] == [7, 8, 9, 10, 11, 12]
+    assert template["unit"]["shear.Hebelarm"] == "cm"
+    assert list(template["column"].values())[:6] == [
+        *rows[0].split(",")[0:1],
+        *rows[0].split(",")[3:6],
+        "remark",
+        "experiment",
+    ]
 
 
 def test_sheet_named_like_a_table_is_imported_once() -> None:
@@ -352,13 +383,91 @@ OPEN = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("change", "answers"), OPEN)
-def test_an_unstated_fact_is_an_error(change: Callable[[Workbook], None], answers: dict[str, dict[str, str]]) -> None:
+ISSUES: list[list[str]] = [
+    ["unit penetration.Last= 5 Hang oben:5 None Last"],
+    ["unit penetration.Eindringtiefe= 6 Hang oben:5 None Eindringtiefe"],
+    ["implausible_hardness None Hang.xlsx None"],
+    ["table Hang oben:5=penetration 5 Hang oben:5 None Versuch, Kantwinkel, Druck, Eindringtiefe, Dichte"],
+    [
+        "unit penetration.Kantwinkel= 2 Hang oben:5 None Kantwinkel",
+        "unit penetration.Last= 5 Hang oben:5 None Last",
+        "unit penetration.Eindringtiefe= 6 Hang oben:5 None Eindringtiefe",
+    ],
+    [
+        "cells hidden= 2 Alle Daten:5 7",
+        "repeated_table None Alle Daten:5 None Hang oben:5",
+        "repeated_table None Alle Daten:15 None Hang oben:15",
+    ],
+    ["ignore Hang oben!13= 0 Hang oben 13 ab hier Stempel 2,1 kg dazu"],
+    ["unit penetration.Last= 5 Hang oben:5 None Last"],
+    ["unit penetration.Last= 5 Hang oben:5 None lbs"],
+    ["unit shear.Hebelarm= 6 Hang oben:15 None Hebelarm"],
+    ["table Hang oben:5=penetration 5 Hang oben:5 None Versuch, Kantwinkel, Zusatz, Eindringtiefe, Bemerkung"],
+    ["table Hang oben:5=penetration 5 Hang oben:5 None Versuch, Kantwinkel, Last, Tiefe der Messuhr, Bemerkung"],
+    [
+        "column penetration.Eindringtiefe=depth_mm 2 Hang oben:5 None Eindringtiefe",
+        "column penetration.Tiefe=depth_mm 2 Hang oben:5 None Tiefe",
+        "unit penetration.Tiefe= 6 Hang oben:5 None Tiefe",
+    ],
+    ["site Hang oben=Hang oben 0 Hang oben:5 None"],
+    ["site Hang oben=Hang oben 2 Hang oben:5 None Gletscher, Hang oben"],
+    ["tool =ski 200 x 62 mm 0 Hang oben:5 None"],
+    ["tool =ski 200 x 62 mm 0 Hang oben:5 None"],
+    ["tool =ski 200 x 62 mm 0 Hang oben:5 None"],
+    ["tool =ski 200 x 62 mm 0 Hang oben:5 None", "plate =100 mm 0 Hang oben:15 None"],
+    ["ignore Notizen!2= 0 Notizen 2 Last ohne Stempel (2,1 kg)"],
+    ["other_unit Last Hang oben:5 None kg, n"],
+    ["cells fill-down=yes 1 Hang oben:5 8"],
+    ["ignore Hang oben!13= 0 Hang oben:5 13 Mittelwert"],
+    [
+        "cells decimal= 2 Hang oben:5 None , .",
+        "not_a_number Last Hang oben 7 10,0",
+        "not_a_number Last Hang oben 8 20,0",
+        "not_a_number Eindringtiefe Hang oben 8 0,89",
+        "not_a_number Last Hang oben 9 50,0",
+        "not_a_number Eindringtiefe Hang oben 9 1,41",
+        "not_a_number Last Hang oben 10 10,0",
+        "not_a_number Eindringtiefe Hang oben 10 0,72",
+        "not_a_number Last Hang oben 11 20,0",
+        "not_a_number Eindringtiefe Hang oben 11 1,03",
+        "not_a_number Last Hang oben 12 50,0",
+        "not_a_number Eindringtiefe Hang oben 12 1,59",
+    ],
+    ["not_a_number Eindringtiefe Hang oben 7 ca. 0,63"],
+    ["no_heading F Hang oben 9 1,59"],
+    ["cells struck= 2 Hang oben:5 13"],
+    ["cells hidden= 2 Hang oben:5 13"],
+    ["cells hidden= 2 Alle Daten:5 7"],
+    ["cells hidden= 2 Hang oben:5 None"],
+    ["ignore Hang oben!13= 0 Hang oben:5 13"],
+    ["repeated_table None Alle Daten:5 None Hang oben:5", "repeated_table None Alle Daten:15 None Hang oben:15"],
+]
+"""Of each case above: option, key, proposed answer and number of choices, or code and column; place, row and value."""
+
+
+def issues(proposal: Proposal) -> list[str]:
+    """Questions and errors in their order."""
+    asked = {
+        item.problem: f"{item.option} {item.key}={item.proposed} {len(item.choices)}" for item in proposal.questions
+    }
+    return [
+        f"{asked.get(problem, f'{problem.code} {problem.column}')} {problem.file} {problem.row} "
+        f"{problem.value if type(problem.value) is str else ''}".rstrip()
+        for problem in proposal.problems
+    ]
+
+
+@pytest.mark.parametrize(
+    ("change", "answers", "expected"), [(*case, found) for case, found in zip(OPEN, ISSUES, strict=True)]
+)
+def test_an_unstated_fact_is_an_error(
+    change: Callable[[Workbook], None], answers: dict[str, dict[str, str]], expected: list[str]
+) -> None:
     book = everyday()
     change(book)
     data = bytes_of(book)
     rejected = propose(FILE, data)
-    assert rejected.problems
+    assert issues(rejected) == expected
     assert not rejected.files
     for question in rejected.questions:
         assert f"--{question.option}" in str(question.problem)

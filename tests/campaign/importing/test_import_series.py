@@ -7,10 +7,12 @@ from openpyxl import Workbook
 
 from skisnow.campaign.importing.answers import Answers
 from skisnow.campaign.importing.proposal import propose
+from skisnow.campaign.importing.sections import find_sections
+from skisnow.campaign.importing.sheets import read_sheets
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
 
-from .test_import import FILE, G, bytes_of, hardness
+from .test_import import FILE, G, bytes_of, hardness, issues
 
 PAIR = ["Last [kg]", "Tiefe [mm]"]
 PAIRS: list[list[Any]] = [PAIR * 2, [10, 0.63, 10, 0.72], [50, 1.41, 50, 1.59]]
@@ -53,6 +55,74 @@ ASKED = [
 ]  # fmt: skip
 
 
+SECTIONS: list[list[str]] = [
+    [
+        "Hang oben:4 4 6 (0, 1, 5, 6) Last [kg], Tiefe [mm], Versuch, Kantwinkel | , , , ° | range(1, 3)",
+        "Hang oben:4 4 6 (2, 3, 7, 8) Last [kg], Tiefe [mm], Versuch, Kantwinkel | , , , ° | range(1, 3)",
+    ],
+    [
+        "Hang oben:2 2 4 (0, 1, 5, 6) Last [kg], Tiefe [mm], Versuch, Kantwinkel | , , , ° | range(0, 1)",
+        "Hang oben:2 2 4 (2, 3, 7, 8) Last [kg], Tiefe [mm], Versuch, Kantwinkel | , , , ° | range(0, 1)",
+    ],
+    [
+        "Hang oben:3 3 5 (1, 2, 6, 7) Last [kg], Tiefe [mm], Versuch, Kantwinkel [°] | , , ,  | range(0, 2)",
+        "Hang oben:3 3 5 (3, 4, 8, 9) Last [kg], Tiefe [mm], Versuch, Kantwinkel [°] | , , ,  | range(0, 2)",
+    ],
+    [
+        "Hang oben:4 4 6 (0, 1, 5, 6) Last [kg], Tiefe [mm], Hang oben:2, Hang oben:3 | , , ,  | range(1, 3)",
+        "Hang oben:4 4 6 (2, 3, 7, 8) Last [kg], Tiefe [mm], Hang oben:2, Hang oben:3 | , , ,  | range(1, 3)",
+    ],
+    [
+        "Hang oben:3 3 5 (0, 1, 4, 5) Last [kg], Tiefe [mm], Versuch, Kantwinkel [°] | , , ,  | range(0, 2)",
+        "Hang oben:3 3 5 (0, 2, 6, 7) Last [kg], Tiefe [mm], Versuch, Kantwinkel [°] | , , ,  | range(0, 2)",
+    ],
+    [
+        "Hang oben:3 3 5 (0, 1, 5, 6) Last [kg], Tiefe [mm], Versuch, Kantwinkel | , , , ° | range(0, 2)",
+        "Hang oben:3 3 5 (2, 3, 7, 8) Last [N], Tiefe [cm], Versuch, Kantwinkel | , , , ° | range(0, 2)",
+    ],
+    [
+        "Hang oben:1 1 3 (0, 1, 2, 3) Versuch, Kantwinkel [°], Last [kg], Tiefe [mm] |  | range(0, 0)",
+        "Hang oben:1 1 3 (4, 5, 6, 7) Versuch, Kantwinkel [°], Last [kg], Tiefe [mm] |  | range(0, 0)",
+    ],
+    ["Hang oben:1 2 6 (0, 1, 2, 3) Versuch, Kantwinkel [°], Last, Eindringtiefe [mm] | Nr., , kg,  | range(0, 0)"],
+    ["Hang oben:1 3 7 (0, 1, 2, 3) Versuch, Kantwinkel, Last, Eindringtiefe | Nr., °, kg, mm | range(0, 0)"],
+    ["Hang oben:1 2 6 (0, 1, 2, 3) Test, Edge angle [°], Load, Penetration depth [mm] | no., , kg,  | range(0, 0)"],
+    ["Hang oben:1 2 6 (0, 1, 2, 3) Versuch, Kantwinkel [°], Last, Tiefe [mm] | , , kg,  | range(0, 0)"],
+    ["Hang oben:1 2 6 (0, 1, 2, 3) Versuch, Kantwinkel, Last in kg, Tiefe in mm | , , ,  | range(0, 0)"],
+]
+"""Of each right case: heading row, first data row, row behind the last, columns, headings, units, rows of titles."""
+ISSUES: list[list[str]] = [
+    ["table Hang oben:2=penetration 5 Hang oben:2 None Last [kg], Tiefe [mm]"],
+    ["table Hang oben:4=penetration 5 Hang oben:4 None Last [kg], Tiefe [mm], Hang oben:2, Hang oben:3"],
+    [
+        "table Hang oben:3=penetration 5 Hang oben:3 None Last [kg], Tiefe [mm]",
+        "ignore Hang oben!2= 0 Hang oben 2 Kantwinkel 30°",
+    ],
+    [
+        "table Hang oben:3=penetration 5 Hang oben:3 None Last [kg], Tiefe [mm]",
+        "ignore Hang oben!2= 0 Hang oben 2 Kantwinkel: 30: Kantwinkel 45°",
+    ],
+    [
+        "table Hang oben:3=penetration 5 Hang oben:3 None Last [kg], Tiefe [mm], Tiefe [mm], Last [kg]",
+        "ignore Hang oben!2= 0 Hang oben 2 Kantwinkel 30°: Kantwinkel 45°",
+    ],
+    [
+        "column penetration.Tiefe [mm]=depth_mm 2 Hang oben:1 None Tiefe [mm]",
+        "ignore Hang oben!E= 0 Hang oben:1 None Tiefe [mm]",
+    ],
+    ["table Hang oben:1=penetration 5 Hang oben:1 None Versuch, Kantwinkel [°], Last, Nachtiefe [mm]"],
+    ["table Hang oben:1=penetration 5 Hang oben:1 None Versuch, Kantwinkel [°], Last [kg], Nachtiefe [mm]"],
+    ["ignore Hang oben!1= 0 Hang oben 1 Auflast: Kegel"],
+    ["table Hang oben:1=penetration 5 Hang oben:1 None Versuch, Kantwinkel, Last"],
+    [
+        "unit penetration.Kantwinkel= 2 Hang oben:1 None 30°",
+        "unit penetration.Last= 5 Hang oben:1 None 100 N",
+        "unit penetration.Tiefe= 6 Hang oben:1 None 0,5 mm",
+    ],
+]
+"""Of each case that is asked about, as in test_import."""
+
+
 def _book(rows: list[list[Any]]) -> bytes:
     book = Workbook()
     sheet = book.active
@@ -74,8 +144,20 @@ def test_series_side_by_side_under_two_heading_rows(rows: list[list[Any]], answe
     assert (experiment_hardness(campaign) / 1e9).tolist() == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("rows", ASKED)
-def test_unclear_series_and_headings_are_errors_with_an_option(rows: list[list[Any]]) -> None:
+@pytest.mark.parametrize(("rows", "expected"), list(zip([rows for rows, _ in RIGHT], SECTIONS, strict=True)))
+def test_tables_on_a_sheet(rows: list[list[Any]], expected: list[str]) -> None:
+    sections = find_sections(read_sheets(FILE, _book(rows))[0], {})
+    assert [
+        f"{part.key} {part.start} {part.end} {part.columns} {', '.join(part.headings)} | {', '.join(part.units)} | "
+        f"{part.titles}"
+        for part in sections
+    ] == expected
+    assert [part.is_last for part in sections] == [False] * (len(sections) - 1) + [True]
+
+
+@pytest.mark.parametrize(("rows", "expected"), list(zip(ASKED, ISSUES, strict=True)))
+def test_unclear_series_and_headings_are_errors_with_an_option(rows: list[list[Any]], expected: list[str]) -> None:
     proposal = propose(FILE, _book(rows), Answers(site={"Hang oben": "Hang oben"}))
     assert not proposal.files
+    assert issues(proposal) == expected
     assert any(f"--{question.option}" in str(question.problem) for question in proposal.questions)
