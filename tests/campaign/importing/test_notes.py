@@ -101,7 +101,8 @@ def test_tools_of_answers() -> None:
 @pytest.mark.parametrize(
     ("text", "heading", "value"),
     [("Versuch 1", "Versuch", "1"), ("Kantwinkel: 30°", "Kantwinkel", "30°"), ("Korn 1", "", "Korn 1"),
-     ("Hang 1", "Hang", "1"), ("Test no. 2", "Test no.", "2"), ("Kantwinkel = 4 5", "Kantwinkel", "4 5"), ("Versuch", "", "Versuch")],
+     ("Hang 1", "Hang", "1"), ("Test no. 2", "Test no.", "2"),
+     ("Kantwinkel = 4 5", "Kantwinkel", "4 5"), ("Versuch", "", "Versuch")],
 )  # fmt: skip
 def test_words_of_titles(text: str, heading: str, value: str) -> None:
     assert _named_value(text) == (heading, value)
