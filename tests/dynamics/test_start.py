@@ -12,7 +12,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact
-from skisnow.dynamics import Body, Dynamics, Ended, StepControl
+from skisnow.dynamics import Body, Dynamics, Ended, FlexibleSki, StepControl
 from skisnow.scenario import load_scenario
 from tests.coded import Coded, coded, raises
 
@@ -211,9 +211,12 @@ def test_skis(wrong: dict[str, Any], expected: Coded) -> None:
 @pytest.mark.parametrize(("rows", "unknown"), [(4, [0, 3]), (6, [0, 0]), (6, [0, 3, 6]), (6, [-1, 3]), (6, [1, 4])])
 def test_unknowns_of_nodes(rows: int, unknown: list[int]) -> None:
     """Three for each free node in any order, -1 for a clamped one."""
-    band = {name: np.ones((rows, 6)) for name in ("mass", "stiffness", "coupling")}
+    ski = BODY.skis[0]
+
+    def made(size: int, places: list[int]) -> FlexibleSki:
+        band = np.ones((size, 6))
+        return replace(ski, mass=band, stiffness=band, coupling=band, unknown=np.array(places))
+
     with raises(ParameterError, "wrong_shape", n_free=sum(each >= 0 for each in unknown), n=rows):
-        replace(BODY.skis[0], **band, unknown=np.array(unknown))
-    band = {name: np.ones((6, 6)) for name in band}
-    ski = replace(BODY.skis[0], **band, unknown=np.array([3, -1, 0]), inertia=None)
-    assert ski.unknown.tolist() == [3, -1, 0]
+        made(rows, unknown)
+    assert made(6, [3, -1, 0]).unknown.tolist() == [3, -1, 0]
