@@ -31,8 +31,8 @@ def released(step_ms: float, lifted_m: float = LIFTED_M) -> Record:
 
 def flown(record: Record, duration_s: float) -> None:
     """Fly on, without output on the way."""
-    trouble = record.advance(record.setup.time + duration_s)
-    if trouble is not None or record.setup.touches:
+    trouble = record.advance(record.setup.dynamics.time + duration_s)
+    if trouble is not None or record.setup.dynamics.touches:
         raise AssertionError(f"our sledge did not fly: {trouble or 'it touches snow'}")
 
 

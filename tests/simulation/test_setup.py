@@ -60,6 +60,9 @@ def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge:
     assert rotation == pytest.approx(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
 
 
+IN_THE_AIR = SimpleNamespace(touches=False)
+
+
 @pytest.mark.parametrize(
     ("parts", "flying", "skied", "outcome"),
     [
@@ -68,9 +71,9 @@ def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge:
         ({"tilt": (1.05, 0.0)}, 0.3, True, "fell"),
         ({"tilt": (0.0, 0.7)}, 0.3, False, "tipped_over"),
         ({"tilt": (0.0, 0.69), "height": -0.6}, 0.3, False, "airborne"),
-        ({"tilt": (0.0, 0.7), "touches": False}, 0.3, False, "airborne"),
-        ({"height": 1.9, "tilt": (1.2, 0.7), "touches": False}, 0.3, True, None),
-        ({"height": 2.1, "touches": False}, 0.3, True, "airborne"),
+        ({"tilt": (0.0, 0.7), "dynamics": IN_THE_AIR}, 0.3, False, "airborne"),
+        ({"height": 1.9, "tilt": (1.2, 0.7), "dynamics": IN_THE_AIR}, 0.3, True, None),
+        ({"height": 2.1, "dynamics": IN_THE_AIR}, 0.3, True, "airborne"),
         ({"height": -0.51, "past_end": True}, 0.0, False, "sunk"),
         ({"height": -0.49, "past_end": True}, 0.0, False, "end_of_slope"),
     ],
@@ -79,7 +82,7 @@ def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied:
     """Leaning by 60°, on the snow by 40° ahead, 0.3 s in the air (a skier above 2 m), sunk, off."""
     scenario = SimpleNamespace(skier=Skier() if skied else None)
     usual: dict[str, Any] = {"tilt": (0.0, 0.0), "height": 0.0, "past_end": False}
-    usual |= {"touches": True, "drive": None}
+    usual |= {"dynamics": SimpleNamespace(touches=True), "drive": None}
     stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))
     assert simulated_run._current_outcome(stub, flying) == outcome
 

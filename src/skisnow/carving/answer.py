@@ -51,7 +51,13 @@ def answer_question(question: CarveQuestion, *, sources: Sources | None = None) 
     ski = question.changed(ski)
     snow = asked_snow(question, sources)
     require_clamp(ski, question.clamp_length_m)
-    equilibrium, edge_angle = _solve_equilibrium(question, ski, snow), question.edge_angle_deg * DEGREE
+    arguments, edge_angle = question.arguments, question.edge_angle_deg * DEGREE
+    if question.at_rest or question.unloading_ratio is None:
+        for name in ("unloading_ratio", "side_force_bending", "side_force_spread", "groove", "moment_balance"):
+            del arguments[name]
+        equilibrium = rest(ski, snow, **arguments)
+    else:
+        equilibrium = carve(ski, snow, **arguments)
     _, outside = with_range_warnings(lambda: _warn_outside_ranges(snow, edge_angle, at_rest=question.at_rest))
     return CarveAnswer(
         question, ski, snow, equilibrium, (*warned, *implausible_values(question), *outside, *equilibrium.warnings)
@@ -69,15 +75,6 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
         )
     snow = sources.named_snow(question.as_dict())
     return require_stress(snow, question.S_f_N_per_mm2, carves=not question.at_rest)
-
-
-def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties) -> Equilibrium:
-    """Equilibrium at rest, if it is requested or no unloading ratio is given; otherwise that of a carved turn."""
-    arguments = question.arguments
-    if question.at_rest or question.unloading_ratio is None:
-        without = ("unloading_ratio", "side_force_bending", "side_force_spread", "groove", "moment_balance")
-        return rest(ski, snow, **{name: value for name, value in arguments.items() if name not in without})
-    return carve(ski, snow, **arguments)
 
 
 def _warn_outside_ranges(snow: SnowProperties, edge_angle: float, *, at_rest: bool) -> None:

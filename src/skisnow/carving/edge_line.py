@@ -104,7 +104,10 @@ class EdgeLine:
         x, y = grid[middle + away], self.at(grid)[middle + away]
         # a circle counts for one step of the edge, those at the ends for their part of it
         length = np.clip((outer - x[1]) / _STEP + 0.5, 0.0, 1.0) * np.clip((x[1] - inner) / _STEP + 0.5, 0.0, 1.0)
-        curvature = circle_curvature(x, y)
+        # curvature of the circle through each three points, positive if the middle one is below the chord
+        twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
+        sides = [np.hypot(x[i] - x[j], y[i] - y[j]) for i, j in ((1, 0), (1, 2), (0, 2))]
+        curvature = -2.0 * twice_area / (sides[0] * sides[1] * sides[2])
         level = -np.log(np.where(curvature > 0.0, curvature, math.exp(-_STRAIGHTEST)))
 
         def balance(median: float) -> tuple[float, FloatArray, FloatArray]:
@@ -175,13 +178,6 @@ def sections_at(
     ski = model.ski
     width, height = (np.interp(stations, ski.station[::-1], table[::-1]) for table in (ski.width, ski.base_height))
     return width, height, beam_rows(model, stations)
-
-
-def circle_curvature(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Curvature (1/m) of circles through three points each, (3, k), positive if the middle is below the chord."""
-    twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
-    sides = [np.hypot(x[i] - x[j], y[i] - y[j]) for i, j in ((1, 0), (1, 2), (0, 2))]
-    return np.asarray(-2.0 * twice_area / (sides[0] * sides[1] * sides[2]))
 
 
 def circle_radius(front: tuple[float, float], middle: tuple[float, float], rear: tuple[float, float]) -> float | None:

@@ -11,17 +11,16 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_choice
 from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
-from .checks import require_choices, require_kinds, require_ranges, require_strength, require_within, unloading_ratio_of
 from .edge_line import EdgeLine
-from .laws import SnowLaws, equivalent_snow, snow_laws
+from .laws import equivalent_snow, snow_laws
 from .outputs import CarveRequest
 from .result import Equilibrium, equilibrium_of, radius_at_boot
 from .sensitivity import CarveDerivatives
@@ -35,6 +34,7 @@ GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
 SideForceSpread: TypeAlias = Literal["depth", "base-reaction"]
 
+GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 ELEMENTS: Final = 160
 """Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (assumption: see the convergence tests)."""
 GENTLER_RATIOS: Final = (500.0, 300.0, 200.0)
@@ -137,20 +137,25 @@ def carve(
       a carved turn", Sports Eng. 12, 123-133, doi 10.1007/s12283-010-0038-z.
     * The page docs/methods/carved-turn.md.
     """
-    require_kinds(ski, snow)
+    _require_kinds(ski, snow)
     ratio = _unloading_ratio(snow, unloading_ratio, penetration)
-    require_ranges(edge_angle, load, ratio, moment)
-    require_within(ski, load, moment)
-    require_choices(groove, moment_balance, side_force_spread)
+    _require_ranges(edge_angle, load, ratio, moment)
+    _require_within(ski, load, moment)
+    require_choice("groove", groove, get_args(GrooveForm))
+    require_choice("moment_balance", moment_balance, get_args(MomentBalance))
+    require_choice("side_force_spread", side_force_spread, get_args(SideForceSpread))
     laws = snow_laws(shear, penetration, edge_angle)
     if laws is None or not (laws.shear is not None or laws.along_base_normal):
-        require_strength(snow)
+        _require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(
         ski, snow, edge_angle, load, moment, ratio, side_force_bending=side_force_bending, twist=twist,
         side_force_spread=side_force_spread, moment_balance=moment_balance,
     )  # fmt: skip
-    conditions = _with_laws(laws, ski, conditions)
+    conditions = conditions._replace(laws=laws)
+    if laws is not None and laws.penetration is not None:  # the search begins at linear snow
+        hardness, first_ratio = equivalent_snow(laws.penetration, ski, edge_angle, load)
+        conditions = conditions._replace(hardness=hardness, excess=hardness * (first_ratio - 1.0))
     find = solved if groove == "edge" else _solve_with_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -186,8 +191,8 @@ def differentiable_carve(
     is tried first.
     """
     ratio = _unloading_ratio(snow, unloading_ratio, None)
-    require_ranges(edge_angle, load, ratio, moment)
-    require_strength(snow)
+    _require_ranges(edge_angle, load, ratio, moment)
+    _require_strength(snow)
     model = clamped(ski, clamp_length, elements)
     conditions = _conditions(ski, snow, edge_angle, load, moment, ratio, **forms)
     solution = solved(model, conditions, near=near if near is not None and len(near.u) == model.size else None)
@@ -243,9 +248,9 @@ def rest(
       stiffness is compared with.
     * The page docs/methods/carved-turn.md.
     """
-    require_kinds(ski, snow)
-    require_ranges(edge_angle, load, 1.0, moment)
-    require_within(ski, load, moment)
+    _require_kinds(ski, snow)
+    _require_ranges(edge_angle, load, 1.0, moment)
+    _require_within(ski, load, moment)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, side_force_bending=False, twist=twist)
     conditions = conditions._replace(side_force=0.0)
@@ -254,21 +259,17 @@ def rest(
 
 def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: object) -> float:
     """Ratio k_u/H_V, stated or of the snow; 1 with a penetration law, which contradicts a stated one."""
-    if penetration is None:
-        return unloading_ratio_of(snow, stated)
-    if stated is not None:
+    if penetration is not None and stated is not None:
         raise ParameterError(
             "unloading_ratio is {given}, but a penetration law defines the unloading itself: remove unloading_ratio"
         ).tag("contradiction", given=stated)
-    return 1.0
-
-
-def _with_laws(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
-    """The conditions with laws; a penetration law adds linear snow (H_V, k_u), from which the search begins."""
-    if laws is None or laws.penetration is None:
-        return conditions._replace(laws=laws)
-    hardness, ratio = equivalent_snow(laws.penetration, ski, conditions.edge_angle, conditions.load)
-    return conditions._replace(laws=laws, hardness=hardness, excess=hardness * (ratio - 1.0))
+    ratio = 1.0 if penetration is not None else snow.unloading_ratio if stated is None else stated
+    if ratio is None:
+        raise ParameterError(
+            "unloading_ratio is missing, and the snow ({source}) has none: k_u/H_V has no default. Give it here, or "
+            "to the snow: 1 is elastic snow, math.inf rigid-plastic snow"
+        ).tag("missing", source=snow.source)
+    return ratio
 
 
 def _conditions(
@@ -326,3 +327,49 @@ def _solve_with_path(model: ClampedSki, conditions: Conditions, *, near: Solutio
         offset = offset + share * change
         solution = solved(model, conditions, offset=offset, near=solution)
     return Solution(False, *(getattr(solution, name) for name in Solution.__slots__[1:]))
+
+
+def _require_kinds(ski: object, snow: object) -> None:
+    """Reject arguments of another type than a ski and snow."""
+    if not isinstance(ski, Ski):
+        raise ParameterError("ski is {ski!r}; it must be a Ski, as read_ski returns it for a name or a file").tag(
+            "wrong_kind", ski=ski
+        )
+    if not isinstance(snow, SnowProperties):
+        raise ParameterError(
+            "snow is {snow!r}; it must be SnowProperties: from published_snow, from snow_from_results, or from numbers"
+        ).tag("wrong_kind", snow=snow)
+
+
+def _require_ranges(edge_angle: float, load: float, unloading_ratio: float, moment: float) -> None:
+    """Reject an edge angle, load, unloading ratio or moment outside its range."""
+    if not 0.0 <= edge_angle <= GREATEST_EDGE_ANGLE:
+        raise ParameterError(
+            "edge_angle is {edge_angle} rad; it must be from 0 to {greatest_edge_angle:.3f} rad (85 degrees)"
+        ).tag("out_of_range", edge_angle=edge_angle, greatest_edge_angle=GREATEST_EDGE_ANGLE)
+    if not (math.isfinite(load) and load > 0.0):
+        raise ParameterError("load is {load} N; it must be a finite force above 0").tag("out_of_range", load=load)
+    if not unloading_ratio >= 1.0:
+        raise ParameterError("unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more").tag(
+            "out_of_range", unloading_ratio=unloading_ratio
+        )
+    if not math.isfinite(moment):
+        raise ParameterError("moment is {moment} N m; it must be finite").tag("not_a_number", moment=moment)
+
+
+def _require_within(ski: Ski, load: float, moment: float) -> None:
+    """Refuse a moment that puts the resultant beyond the ski's ends."""
+    ahead = moment / load
+    if not ski.station[-1] < ahead < ski.station[0]:
+        raise ParameterError(
+            "a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot: "
+            "off the ski, which reaches from {tail:.2f} to {tip:.2f} m: no snow can balance that"
+        ).tag("out_of_range", moment=moment, load=load, ahead=ahead, tail=ski.station[-1], tip=ski.station[0])
+
+
+def _require_strength(snow: SnowProperties) -> None:
+    """Reject snow without S_f if no law carries the side force."""
+    if snow.failure_shear_stress is None:
+        raise ParameterError(
+            "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear law"
+        ).tag("no_data", source=snow.source)

@@ -10,14 +10,13 @@ from typing import Annotated, Any, Final, Literal
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3, in_degrees_if_radians
-from ..parameters import Allowed, Label, Quantity, own_quantities, require_declared, suggest_and_list
+from ..parameters import Allowed, Declared, Label, Quantity, own_quantities, suggest_and_list
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
 from ..ski.editing import SIDECUT, SkiEdit, edit_stations, edited_ski
 from ..snow import SnowProperties
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
-from .checks import GREATEST_EDGE_ANGLE
-from .equilibrium import ELEMENTS
+from .equilibrium import ELEMENTS, GREATEST_EDGE_ANGLE
 
 
 def carve_question(values: Mapping[str, object]) -> CarveQuestion:
@@ -49,7 +48,7 @@ def require_known(names: Iterable[str]) -> None:
 
 
 def require_complete(values: Mapping[str, object]) -> None:
-    """Refuse inputs that lack one without a default, or name the snow in no way or in two.
+    """Refuse inputs that lack one without a default, or name the snow in no way or in two; a site needs results.
 
     Call it with all names of a study before its first point.
     """
@@ -59,12 +58,7 @@ def require_complete(values: Mapping[str, object]) -> None:
             raise ParameterError("{name} is missing: {meaning}. It has no default").tag(
                 "missing", name=name, meaning=CARVE_KEYS[name].meaning
             )
-    _require_one_snow(set(values), rests)
-
-
-def _require_one_snow(names: set[str], rests: bool) -> None:
-    """Reject no snow, two snows, H_V without S_f unless the ski rests, and a site without results."""
-    ways = [name for name in ("H_V_N_per_mm3", "results", "published") if name in names]
+    ways = [name for name in ("H_V_N_per_mm3", "results", "published") if name in values]
     choices = Message("Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published")
     if not ways:
         raise ParameterError("no snow is given: H_V has no default. {choices}").tag("missing", choices=choices)
@@ -72,12 +66,12 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
         raise ParameterError("the snow is given in two ways, {first} and {second}. {choices}").tag(
             "contradiction", first=ways[0], second=ways[1], choices=choices
         )
-    if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in names and not rests:
+    if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in values and not rests:
         raise ParameterError(
             "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. State "
             "it, or compute the ski at rest"
         ).tag("missing")
-    if "site" in names and ways != ["results"]:
+    if "site" in values and ways != ["results"]:
         raise ParameterError("site names one site of an analysed campaign and needs results. Remove it").tag(
             "contradiction"
         )
@@ -102,7 +96,7 @@ def _ski_factor(name: str, what: Message) -> Quantity:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CarveQuestion:
+class CarveQuestion(Declared):
     """One question about a ski in snow, in the units in the names; None for inputs that are not stated."""
 
     ski: Annotated[str, Quantity("ski", "a ski of the catalogue, or the path of a ski file")]
@@ -219,9 +213,6 @@ class CarveQuestion:
     width_factor: Annotated[float, _ski_factor("width_factor", Message("width"))] = 1.0
     EI_factor: Annotated[float, _ski_factor("EI_factor", Message("bending stiffness EI"))] = 1.0
     GJ_factor: Annotated[float, _ski_factor("GJ_factor", Message("torsional stiffness GJ"))] = 1.0
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
     def changed(self, ski: Ski) -> Ski:
         """Ski with the factors of the question applied; the ski itself if all factors are 1."""

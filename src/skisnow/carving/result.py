@@ -220,12 +220,6 @@ class Equilibrium(Shown):
         return Facts(self.outcome.replace("_", " "), rows)
 
 
-def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:
-    """True if the snow cannot carry the load even with the whole base at the largest depth."""
-    area = float(model.stations.weight @ model.stations.width) * math.cos(conditions.edge_angle)
-    return conditions.load > conditions.hardness * SINKING_DEPTH * area
-
-
 def equilibrium_of(
     model: ClampedSki,
     conditions: Conditions,
@@ -242,8 +236,11 @@ def equilibrium_of(
     spread of side force, computed at once under laws from outside, which need not be picklable.
     """
     station = model.stations.station
-    deepest = float(np.max(solution.edge_depth))
-    sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
+    if solution.converged:
+        sinks = float(np.max(solution.edge_depth)) > SINKING_DEPTH
+    else:  # too soft to carry the load even with the whole base at the largest depth
+        area = float(model.stations.weight @ model.stations.width) * math.cos(conditions.edge_angle)
+        sinks = conditions.load > conditions.hardness * SINKING_DEPTH * area
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
         nothing = (None,) * 12

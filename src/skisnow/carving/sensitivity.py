@@ -167,7 +167,8 @@ class CarveDerivatives:
         growths = self.derivatives(output, (*values,)).tolist()
         for (name, value), growth in zip(values.items(), growths, strict=True):
             relative = growth * value / of_output if value and of_output else None
-            kink = self._kink_distance(name) / (abs(value) or 1.0) if kinks else math.inf
+            has_kink = kinks and name != "snow.S_f_N_per_mm2"
+            kink = self._growth(name)[4] / (abs(value) or 1.0) if has_kink else math.inf
             step = (2.0 * kink + _BESIDE) * (abs(value) or 1.0)
             sides = (self._beside(name, -step, output), self._beside(name, step, output)) if kink < AT_KINK else None
             out.append(Sensitivity(output, name, of_output, value, growth, relative, kink, sides))
@@ -332,10 +333,6 @@ class CarveDerivatives:
         if direction.shape is not None:
             bent = bent_by(model, self.at.solution.u, direction.shape)
         return self.point.growth(direction.columns(model), direction.numbers, bent)
-
-    def _kink_distance(self, name: str) -> float:
-        """Change of a parameter, in its unit, to the nearest kink of its derivatives; infinite for S_f."""
-        return math.inf if name == "snow.S_f_N_per_mm2" else self._growth(name)[4]
 
     def _parameter_derivatives(self, name: str) -> _ParameterDerivatives:
         """Derivatives of the equations' numbers and of the ski's shape by a parameter."""

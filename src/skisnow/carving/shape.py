@@ -203,10 +203,8 @@ class ShapeGradient:
         """Derivatives by the stations of the ski's tables (rows,), through moved places and lengthened elements."""
         ski, half = model.ski, model.clamp_length / 2.0
         mesh, rows = _mesh(ski.station.tobytes(), model.clamp_length, elements), len(ski.station)
-        shape, stiffness = (
-            np.array([ski.width, ski.base_height]),
-            np.array([ski.bending_stiffness, ski.torsional_stiffness]),
-        )
+        shape = np.array([ski.width, ski.base_height])
+        stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
         lines = mesh.stations, mesh.gauss, _interpolation_at(ski.station.tobytes(), tuple(self.edge.tolist()))
         by_line = [
             lines[0].by_station(shape, self._sections(model, elements)),
@@ -216,7 +214,7 @@ class ShapeGradient:
         out = np.sum([line.to_rows(by[None], rows)[0] for line, by in zip(lines, by_line, strict=True)], axis=0)
         station = (self.stations[0] - by_line[0]).reshape(-1, 2)
         gauss = -by_line[1].reshape(-1, len(GAUSS_POINTS))
-        length = _element_lengths(model)
+        length = model.node[:-1] - model.node[1:]
         by_length = (self.stations[1] / 2.0 + (self.stations[4] + self.stations[5]) / np.repeat(length, 2)).reshape(
             -1, 2
         )
@@ -233,7 +231,7 @@ class ShapeGradient:
     def _add_edge(self, model: ClampedSki, u: FloatArray, node: FloatArray) -> None:
         """Add to `node` the derivatives by the nodes through deflection and twist at fixed places of the edge."""
         element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
-        value, length = _by_element(model, u)[element], _element_lengths(model)[element]
+        value, length = _by_element(model, u)[element], (model.node[:-1] - model.node[1:])[element]
         local, (by_deflection, by_twist) = (model.node[element] - self.edge) / length, self.by_edge[2:]
         slope = np.sum(slope_shape(local, length) * value, axis=1)
         forward = by_deflection * slope + by_twist * (value[:, 5] - value[:, 2]) / length
@@ -340,8 +338,3 @@ def growth_by_tables(
 def _by_element(model: ClampedSki, u: FloatArray) -> FloatArray:
     """Displacements of each element's degrees of freedom, shape (elements, dofs); 0 where the beam is held."""
     return np.append(u, 0.0)[model.dof]  # -1: held
-
-
-def _element_lengths(model: ClampedSki) -> FloatArray:
-    """Lengths of the elements (m)."""
-    return np.asarray(model.node[:-1] - model.node[1:])

@@ -11,7 +11,6 @@ import numpy as np
 from .._support.arrays import FloatArray
 from ..compiled import core
 from ..ski.beam import STATION_POINTS, ClampedSki, deflection_shape, element_places, twist_shape
-from ..ski.ski import Ski
 from .laws import STEEPEST_RATIO, SnowLaws
 
 RIGID_PLASTIC: Final = STEEPEST_RATIO
@@ -147,7 +146,9 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
     ski, node = model.ski, model.node
     dof = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
     free = dof[:, 0] >= 0
-    front, rear = (_CONFORMING_SHARE * end for end in _contact_span(ski))
+    front, rear = ski.contact_points
+    front = _CONFORMING_SHARE * min(front, float(ski.station[0]))
+    rear = _CONFORMING_SHARE * max(rear, float(ski.station[-1]))
     inside = np.clip(node, rear, front)
     width, height = ski.tables_at(
         np.concatenate([inside + _NEAR, inside - _NEAR, inside, [0.0]]), "width", "base_height"
@@ -162,9 +163,3 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
         return u
 
     return bent(width / 2.0), bent(height)
-
-
-def _contact_span(ski: Ski) -> tuple[float, float]:
-    """Stations (m) of the front and rear end of the contact, within the ski."""
-    front, rear = ski.contact_points
-    return min(front, float(ski.station[0])), max(rear, float(ski.station[-1]))

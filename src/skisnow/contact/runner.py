@@ -76,10 +76,6 @@ class Runner(Shown):
             raise ParameterError("Runner: the half width is {half_width:g} m somewhere; it must be above 0").tag(
                 "out_of_range", half_width=self.half_width.min()
             )
-        self._check_nodes()
-
-    def _check_nodes(self) -> None:
-        """Convert the nodes to an array; they must fall from the tip to the tail of the runner."""
         if self.nodes is None:
             return
         nodes = np.array(self.nodes, float)

@@ -49,7 +49,8 @@ class ContactForces(Shown):
 
     def _repr_facts(self) -> Facts:
         """Title, and a row with force (N) and moment (N m) for each runner."""
-        rows = tuple((f"runner {k}", _wrench_in_words(each)) for k, each in enumerate(self.wrench))
+        parts = [[", ".join(f"{each:.4g}" for each in part) for part in (row[:3], row[3:])] for row in self.wrench]
+        rows = tuple((f"runner {k}", f"force ({F}) N, moment ({M}) N m") for k, (F, M) in enumerate(parts))
         return Facts(f"on {len(self.wrench)} runners", rows)
 
 
@@ -311,9 +312,3 @@ class SnowContact(Shown):
             )
         counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
         return [shaped(f"SnowContact: {name}", beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
-
-
-def _wrench_in_words(wrench: FloatArray) -> str:
-    """Force (N) and moment (N m) as a text."""
-    force, moment = (", ".join(f"{each:.4g}" for each in part) for part in (wrench[:3], wrench[3:]))
-    return f"force ({force}) N, moment ({moment}) N m"

@@ -133,7 +133,13 @@ class SnowField(Shown):
         _require("snow_hardness", _minimum(self.snow_hardness), 0.0, above=True)
         _require("failure_shear_stress", _minimum(self.failure_shear_stress), 0.0)
         _require("unloading_ratio", self.unloading_ratio, 1.0)
-        self._reject_second_side_force()
+        law, stress = self.penetration, self.failure_shear_stress
+        greatest = stress.values.max() if isinstance(stress, Grid) else stress
+        if law is not None and law.along_base_normal and (self.shear is not None or greatest > 0.0):
+            raise ParameterError(
+                "SnowField: {kind} acts along the base's normal and so carries the side force itself; set "
+                "failure_shear_stress to 0 and remove the shear law"
+            ).tag("contradiction", kind=type(law).__name__)
         self._require_valid_shares()
         _require("residual_ratio", self.residual_ratio, 0.0)
         if self.residual_ratio > 1.0:
@@ -159,17 +165,6 @@ class SnowField(Shown):
             _require(name, getattr(self, name), 0.0)
         self._require_own_law_for_rate()
         object.__setattr__(self, "compiled", self._core_snow())
-
-    def _reject_second_side_force(self) -> None:
-        """Reject a shear law or a stress next to a penetration law that bears the side force itself."""
-        law = self.penetration
-        if law is None or not law.along_base_normal:
-            return
-        if self.shear is not None or _maximum(self.failure_shear_stress) > 0.0:
-            raise ParameterError(
-                "SnowField: {kind} acts along the base's normal and so carries the side force itself; set "
-                "failure_shear_stress to 0 and remove the shear law"
-            ).tag("contradiction", kind=type(law).__name__)
 
     def _require_valid_shares(self) -> None:
         """Reject shares that are not above 0, and a strength share next to an S_f or law that it cannot multiply."""
@@ -206,16 +201,12 @@ class SnowField(Shown):
         snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
         snow.friction_on_base, snow.shear = self.friction_acts_on == "base-normal", self._core_shear_law()
-        snow.rate = self._core_rate_law()
+        rate = core.RateLaw()
+        rate.damping, rate.delayed_share = self.damping, self.delayed_share
+        rate.retardation, rate.spacing = self.retardation_time, self.delayed_spacing
+        snow.rate = rate
         snow.knot_area, snow.part_along, snow.part_across = self.knot_area, self.part_along, self.part_across
         return snow
-
-    def _core_rate_law(self) -> core.RateLaw:
-        """Damping and delayed deepening for the compiled core."""
-        out = core.RateLaw()
-        out.damping, out.delayed_share = self.damping, self.delayed_share
-        out.retardation, out.spacing = self.retardation_time, self.delayed_spacing
-        return out
 
     def _friction(self) -> core.FrictionLaw:
         """The friction law as coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀) for the core."""
@@ -285,11 +276,6 @@ class SnowField(Shown):
 def _minimum(value: float | Grid) -> float:
     """Smallest value of a grid, or the number itself."""
     return float(value.values.min()) if isinstance(value, Grid) else value
-
-
-def _maximum(value: float | Grid) -> float:
-    """Largest value of a grid, or the number itself."""
-    return float(value.values.max()) if isinstance(value, Grid) else value
 
 
 _LIMITS: Final = {

@@ -54,6 +54,12 @@ class Evaluator:
             [variable.lowest + variable.width * share for variable, share in zip(self.task.variables, z, strict=True)]
         )
 
+    def named_values(self, z: FloatArray) -> dict[str, float]:
+        """Values of the variables by name, in the units of the ski file."""
+        return {
+            variable.name: value for variable, value in zip(self.task.variables, self.values(z).tolist(), strict=True)
+        }
+
     def keys(self, z: FloatArray) -> dict[str, Any]:
         """Keys of the ski file with these variables."""
         return designed_keys(self.task.ski.keys or {}, self.task.variables, self.values(z).tolist())
@@ -252,10 +258,8 @@ def linear_constraints(evaluator: Evaluator) -> tuple[FloatArray, FloatArray]:
         base = total(constraint.terms, zero)
         row = np.array([total(constraint.terms, zero + one) - base for one in np.eye(len(zero))])
         size = float(np.max(np.abs(row), initial=0.0)) or 1.0
-        if np.isfinite(constraint.at_least):
-            rows.append(row / size)
-            limits.append((constraint.at_least - base) / size)
-        if np.isfinite(constraint.at_most):
-            rows.append(-row / size)
-            limits.append((base - constraint.at_most) / size)
+        for sign, limit in ((1.0, constraint.at_least), (-1.0, constraint.at_most)):
+            if np.isfinite(limit):
+                rows.append(sign * row / size)
+                limits.append(sign * (limit - base) / size)
     return np.array(rows).reshape(-1, len(zero)), np.array(limits)

@@ -98,7 +98,14 @@ class _SkiMaker:
         self._tables = [read_ski_table(path, measured.mapped) for path in measured.tables]
         self._assumed: list[Message] = []
         self._width = self._column("width_mm")
-        self._length = self._length_of_ski()
+        length = measured.length
+        if length is None and self._width is not None:
+            length = float(np.ptp(self._width[0])) * MM
+        if length is None:
+            raise ParameterError(
+                "The length of the ski is not known. Give --length-mm, or a table with widths from tip to tail."
+            ).tag("missing")
+        self._length = length
 
     def made(self) -> MeasuredSki:
         """The finished ski, its measured stiffnesses, and the assumptions."""
@@ -107,7 +114,7 @@ class _SkiMaker:
         torsion = self._stiffness("GJ_N_m2", TORSION_TEST, layout)
         like, base = self._like, self._column("base_height_mm")
         if base is None:
-            self._note_assumption(Message("camber, shovel and tail of {ski}", ski=like.name))
+            self._assumed.append(Message("camber, shovel and tail of {ski}", ski=like.name))
         ski = assembled_ski(
             layout,
             name=self._measured.name,
@@ -122,7 +129,7 @@ class _SkiMaker:
             per_area = like.mass / -np.trapezoid(like.width, like.station)
             mass = float(per_area * -np.trapezoid(ski.width, ski.station))
             ski = replace(ski, mass_per_length=ski.mass_per_length * mass)
-            self._note_assumption(Message("mass per area of {ski}", ski=like.name))
+            self._assumed.append(Message("mass per area of {ski}", ski=like.name))
         files = ", ".join(path.name for path in self._measured.tables)
         assumed = "; ".join(map(str, self._assumed))
         return MeasuredSki(
@@ -132,27 +139,12 @@ class _SkiMaker:
             tuple(self._assumed),
         )
 
-    def _note_assumption(self, what: Message) -> None:
-        """Record something that was assumed instead of measured."""
-        self._assumed.append(what)
-
     def _column(self, *names: str) -> tuple[FloatArray, ...] | None:
         """Stations (mm, as in the table) and columns of all tables, without rows that lack a value; None: no rows."""
         rows = [np.stack([t[n] for n in ("station_mm", *names)]) for t in self._tables if all(n in t for n in names)]
         joined = np.concatenate(rows, axis=1) if rows else np.zeros((1 + len(names), 0))
         joined = joined[:, np.isfinite(joined).all(axis=0)]
         return tuple(joined) if joined.size else None
-
-    def _length_of_ski(self) -> float:
-        """Length (m), as given or from the table of widths; rejects a ski without either."""
-        length = self._measured.length
-        if length is None and self._width is not None:
-            length = float(np.ptp(self._width[0])) * MM
-        if length is None:
-            raise ParameterError(
-                "The length of the ski is not known. Give --length-mm, or a table with widths from tip to tail."
-            ).tag("missing")
-        return length
 
     def _outlined(self) -> tuple[Layout, StationFunction]:
         """Layout of the ski, and its width (m) as a function of station (m)."""
@@ -178,16 +170,16 @@ class _SkiMaker:
         else:
             layout, width = self._layout_of_widths(running_share)
         if known.boot is None and known.stations_from != "boot":
-            self._note_assumption(Message("the boot in the middle of the sidecut length"))
+            self._assumed.append(Message("the boot in the middle of the sidecut length"))
         if known.running_length is None:
-            self._note_assumption(Message("running length over sidecut length of {ski}", ski=like.name))
+            self._assumed.append(Message("running length over sidecut length of {ski}", ski=like.name))
         return layout, width
 
     def _sidecut_of_radius(self, tip: float, waist: float, tail: float) -> float:
         """Sidecut length (m) for the measured radius and these widths; without a radius scaled from the similar ski."""
         if self._measured.radius is not None:
             return math.sqrt(8.0 * self._measured.radius * ((tip + tail) / 4.0 - waist / 2.0))
-        self._note_assumption(Message("sidecut length over length of {ski}", ski=self._like.name))
+        self._assumed.append(Message("sidecut length over length of {ski}", ski=self._like.name))
         return self._length * self._like.sidecut_length / self._like.length
 
     def _layout_of_widths(self, running_share: float) -> tuple[Layout, StationFunction]:
@@ -274,7 +266,7 @@ class _SkiMaker:
         if stiffness is not None:
             return StationTable(stiffness.station, stiffness.value).at
         words = {"bending_stiffness": "EI", "torsional_stiffness": "GJ"}
-        self._note_assumption(Message("{quantity} of {ski}", quantity=words[name], ski=self._like.name))
+        self._assumed.append(Message("{quantity} of {ski}", quantity=words[name], ski=self._like.name))
         return self._of_like(name, layout)
 
     def _of_like(self, name: str, layout: Layout) -> StationFunction:

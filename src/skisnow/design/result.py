@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -163,8 +164,9 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
         "name": f"{task.ski.name}, designed",
         "source": f"designed by skisnow from the ski {task.ski.name}",
     }
-    keys = {key: _digits(value) for key, value in keys.items()}
-    rounded = {key: _rounded_value(key, value) for key, value in keys.items()}
+    keys = {key: _rounded(value, lambda number: float(f"{number:.9g}")) for key, value in keys.items()}
+    decimals = {key: 0 if key.endswith("N_m2") else 1 if key.endswith("_mm") else 3 for key in keys}  # as manufactured
+    rounded = {key: _rounded(value, partial(round, ndigits=decimals[key])) for key, value in keys.items()}
     missed = [*_missed_goals(search, z), *_constraints_at(search, z, broken=True)]
     reasons = _active_bounds_and_constraints(search, z) or [_CONTRADICTION] * bool(missed)
     rows = _output_rows(search, keys, rounded)
@@ -173,9 +175,7 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
         ski=ski_of_keys(keys),
         keys=keys,
         rounded_keys=rounded,
-        values={
-            variable.name: float(value) for variable, value in zip(task.variables, evaluator.values(z), strict=True)
-        },
+        values=evaluator.named_values(z),
         rows=rows,
         reached=not missed,
         remarks=(*missed, *reasons, *_slips(rows), CONFIRM),
@@ -184,20 +184,11 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
     )
 
 
-def _digits(value: Any) -> Any:
-    """The value with its numbers rounded to nine digits, as in the ski file."""
+def _rounded(value: Any, rounding: Callable[[float], float]) -> Any:
+    """The value of a ski's key with the rounding of each of its numbers; other values unchanged."""
     if isinstance(value, list):
-        return [_digits(item) for item in value]
-    return float(f"{value:.9g}") if isinstance(value, float) else value
-
-
-def _rounded_value(key: str, value: Any) -> Any:
-    """Number or list of a ski's key, rounded as it would be manufactured; other values unchanged."""
-    if isinstance(value, list):
-        return [_rounded_value(key, item) for item in value]
-    if not isinstance(value, float):
-        return value
-    return round(value, 0 if key.endswith("N_m2") else 1 if key.endswith("_mm") else 3)
+        return [_rounded(item, rounding) for item in value]
+    return rounding(value) if isinstance(value, float) else value
 
 
 def _output_rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tuple[DesignRow, ...]:
@@ -295,12 +286,7 @@ def _optima(search: Search, starts: tuple[Start, ...]) -> tuple[Optimum, ...]:
                 break
         else:
             optima.append((start, 1))
-    names = [variable.name for variable in search.evaluator.task.variables]
+    named = search.evaluator.named_values
     return tuple(
-        Optimum(
-            first.result,
-            count / len(starts),
-            dict(zip(names, search.evaluator.values(first.end).tolist(), strict=True)) if first.end is not None else {},
-        )
-        for first, count in optima
+        Optimum(first.result, count / len(starts), named(first.end)) for first, count in optima if first.end is not None
     )

@@ -196,15 +196,10 @@ def _best_design(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[F
 
 def _front(evaluator: Evaluator, first: Goal, second: Goal, designs: Sequence[FloatArray]) -> tuple[FrontPoint, ...]:
     """The designs in the order of the second deviation, without those that another one beats in both."""
-    names = [variable.name for variable in evaluator.task.variables]
-    made = [
-        FrontPoint(
-            100.0 * _deviation(evaluator, first, z),
-            100.0 * _deviation(evaluator, second, z),
-            dict(zip(names, evaluator.values(z).tolist(), strict=True)),
-        )
-        for z in designs
-    ]
+    made = []
+    for z in designs:
+        off = [100.0 * _deviation(evaluator, goal, z) for goal in (first, second)]
+        made.append(FrontPoint(off[0], off[1], evaluator.named_values(z)))
     front: list[FrontPoint] = []
     for point in sorted(made, key=lambda each: (each.second_percent, each.first_percent)):
         if not front or point.first_percent < front[-1].first_percent - 1e-4:

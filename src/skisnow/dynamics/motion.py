@@ -175,17 +175,12 @@ class Dynamics:
                     "wrong_shape", k=k, n_unknown=len(ski.unknown), nodes=nodes
                 )
         self.body, self.contact = body, contact
-        self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
-        self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
+        self.compiled = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
+        self.compiled.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
         inertia = [ski.inertia for ski in body.skis if ski.inertia is not None]
         self.feels_boots = len(inertia) == len(body.skis)
         if self.feels_boots:
-            self._core.set_skis(np.ascontiguousarray(inertia, float))
-
-    @property
-    def compiled(self) -> core.Dynamics:
-        """The motion as the core's type."""
-        return self._core
+            self.compiled.set_skis(np.ascontiguousarray(inertia, float))
 
     def move_boots(self, motions: Sequence[BootMotion]) -> None:
         """Move each boot against the body by its motion. Set new motions before these end.
@@ -203,15 +198,15 @@ class Dynamics:
             raise ParameterError("there are {n_motions} motions of boots for {n_skis} skis").tag(
                 "wrong_shape", n_motions=len(motions), n_skis=len(self.body.skis)
             )
-        self._core.move_boots(np.array([each.numbers for each in motions]))
+        self.compiled.move_boots(np.array([each.numbers for each in motions]))
 
     def hold_body(self) -> None:
         """Hold the body at its place: only boots that move carry the skis."""
-        self._core.hold_body()
+        self.compiled.hold_body()
 
     def push(self, force: npt.ArrayLike, at: npt.ArrayLike) -> None:
         """Apply a force (N, in space) to the body at a place in its own frame (m), until another one is set."""
-        self._core.set_push(shaped("push", force, (3,)), shaped("place of the push", at, (3,)))
+        self.compiled.set_push(shaped("push", force, (3,)), shaped("place of the push", at, (3,)))
 
     @property
     def boots(self) -> FloatArray:
@@ -219,7 +214,7 @@ class Dynamics:
 
         Place (m), axes ahead, left and off the base, velocity (m/s), angular velocity (rad/s).
         """
-        return self._core.boots.reshape(-1, 6, 3)
+        return self.compiled.boots.reshape(-1, 6, 3)
 
     @property
     def boot_wrench(self) -> FloatArray:
@@ -234,16 +229,16 @@ class Dynamics:
 
         Position along the slope and heading stay.
         """
-        return float(self._core.settle())
+        return float(self.compiled.settle())
 
     def move_to(self, position: FloatArray, rotation: FloatArray) -> None:
         """Set position (m) and rotation of the body before `begin`; the deflections of its skis stay."""
-        self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
+        self.compiled.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
 
     def begin(self, velocity: FloatArray) -> None:
         """Start the motion at the present place of the body: velocity and angular velocity in its own axes (6,)."""
-        self._core.set_velocity(shaped("velocity", velocity, (6,)))
-        self._core.begin()
+        self.compiled.set_velocity(shaped("velocity", velocity, (6,)))
+        self.compiled.begin()
 
     def advance(self, until: float) -> Ended:
         """Take steps until a time (s), at which the last step ends exactly; Ctrl-C is possible between steps.
@@ -254,7 +249,7 @@ class Dynamics:
             The steps fail because a shear law in Python returns a strength that is not finite.
         """
         while True:
-            ended = self._core.advance(until, STEPS_AT_ONCE)
+            ended = self.compiled.advance(until, STEPS_AT_ONCE)
             if ended <= _LAST:
                 if ended != Ended.REACHED:
                     self.contact.require_finite_laws()
@@ -262,37 +257,37 @@ class Dynamics:
 
     def state(self) -> DynamicsState:
         """The motion and the contact's history now, for `restore`."""
-        return DynamicsState(self._core.copy(), self.contact.state())
+        return DynamicsState(self.compiled.copy(), self.contact.state())
 
     def restore(self, state: DynamicsState) -> None:
         """Go back to a state of these dynamics: the steps that follow have the same bits as they had from there."""
         self.contact.restore(state.contact)
-        self._core.assign(state.motion)
+        self.compiled.assign(state.motion)
 
     @property
     def time(self) -> float:
         """Time since `begin` (s)."""
-        return float(self._core.time)
+        return float(self.compiled.time)
 
     @property
     def position(self) -> FloatArray:
         """Position of the body's origin in space (m), (3,)."""
-        return self._core.position
+        return self.compiled.position
 
     @property
     def rotation(self) -> FloatArray:
         """The body's axes as columns in space, (3, 3)."""
-        return self._core.rotation
+        return self.compiled.rotation
 
     @property
     def velocity(self) -> FloatArray:
         """Velocity of the origin (m/s) and angular velocity (rad/s) in the body's axes, (6,)."""
-        return self._core.velocity
+        return self.compiled.velocity
 
     @property
     def moment(self) -> FloatArray:
         """All of the present moment as one row of numbers; `moment_parts` names them."""
-        return self._core.moment
+        return self.compiled.moment
 
     def part(self, name: str) -> FloatArray:
         """Part of the present moment, such as "energies" (J), at the last time reached; `moment_parts` lists them."""
@@ -301,9 +296,9 @@ class Dynamics:
     @property
     def touches(self) -> bool:
         """True if a ski was in the snow at the end of the last step."""
-        return bool(self._core.touches)
+        return bool(self.compiled.touches)
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:
         """Steps, rejected steps, evaluations of the contact, matrices factored, iterations of Newton's method."""
-        return self._core.counts
+        return self.compiled.counts

@@ -262,7 +262,11 @@ def analyse(
     progress = progress or (lambda _: None)
     rng = np.random.default_rng(seed)
     penetration = _analyse_penetration(campaign, geometry, rng, n_resamples, progress)
-    shear = _analyse_shear(campaign)
+    shear = None
+    if campaign.shear is not None:
+        chosen, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
+        by_site = site_values(displacement.value, chosen.used, campaign.shear.site)
+        shear = ShearAnalysis(chosen, shear_stress(campaign, campaign.shear), displacement, by_site)
     recordings = campaign.snow_micro_pen
     if recordings is not None:
         progress(f"{len(recordings)} recordings of the SnowMicroPen")
@@ -362,15 +366,6 @@ def _with_models(
         volume_factor=volume_factor(used, by_last["H_V"], model.of(included)),
         warnings=(*of_series.warnings, *filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
     )
-
-
-def _analyse_shear(campaign: Campaign) -> ShearAnalysis | None:
-    """Results of the shear experiments; None if the campaign has none."""
-    if campaign.shear is None:
-        return None
-    screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
-    by_site = site_values(displacement.value, screened.used, campaign.shear.site)
-    return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
 
 
 def _observations_by_source(

@@ -173,7 +173,11 @@ def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel
     w, usable = _error_variance(readings, model)
     layers = np.exp((model.spreads.mean_exponent[model.group][readings.series] - 1.0) * _log_load_ratio(readings))
     even = x / layers
-    skew = _layering_skewness(model)[readings.series] * _log_load_ratio(readings) ** 3
+    # exponents of layered snow are skewed: third moment of g about g_0 in the group of each series
+    cubes = (model.exponent - model.spreads.mean_exponent[model.group]) ** 3
+    totals = np.bincount(model.group, weights=cubes, minlength=len(model.spreads.mean_exponent))
+    number = np.bincount(model.group, minlength=len(totals))
+    skew = (totals / np.maximum(number, 1))[model.group][readings.series] * _log_load_ratio(readings) ** 3
     mean, square = w / 2.0 + skew / 6.0, 2.0 * w + 8.0 * skew / 6.0  # logarithms of the means of e^ε and e^2ε
     above = readings.sums(usable * even * F * np.exp(-mean))
     below = readings.sums(usable * even**2 * np.exp(-square))
@@ -192,14 +196,6 @@ def _log_load_ratio(readings: Readings) -> FloatArray:
     """Logarithm (n,) of the load of each reading over the largest load of its series."""
     log = np.log(readings.load)
     return log - log[readings.largest][readings.series]
-
-
-def _layering_skewness(model: CampaignModel) -> FloatArray:
-    """Third moment of g about g_0 in the group of each series: exponents of layered snow are skewed."""
-    cubes = (model.exponent - model.spreads.mean_exponent[model.group]) ** 3
-    n_groups = len(model.spreads.mean_exponent)
-    number = np.bincount(model.group, minlength=n_groups)
-    return (np.bincount(model.group, weights=cubes, minlength=n_groups) / np.maximum(number, 1))[model.group]
 
 
 def _error_variance(readings: Readings, model: CampaignModel) -> tuple[FloatArray, FloatArray]:

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from .._support.arrays import BoolArray, FloatArray
+from .._support.arrays import FloatArray
 from ..statistics.bounded import non_negative_fits
 from ..statistics.combined_uncertainty import percentile_interval, resampling_counts
 from ..statistics.f_tests import nested_f_test
@@ -48,19 +48,16 @@ class NestedRows:
 def compare_nested_rows(fits: tuple[ModelFit, ...]) -> tuple[NestedRows, ...]:
     """Compare all nested pairs of one hardness."""
     by_model = {fit.model: fit for fit in fits}
-    return tuple(_compare_nested_pair(by_model[full], by_model[reduced]) for full, reduced in NESTED_PAIRS)
-
-
-def _compare_nested_pair(full: ModelFit, reduced: ModelFit) -> NestedRows:
-    """F test of a model against a nested one, and the change of its rmse (%); flagged if a fit is at a bound."""
-    test = nested_f_test(
-        full.sse, reduced.sse, n=full.n, n_parameters_full=full.n_parameters, n_parameters_reduced=reduced.n_parameters
-    )
-    change = 100.0 * (reduced.rmse / full.rmse - 1.0) if full.rmse > 0 else float("nan")
-    if abs(change) <= EQUAL_PERCENT:
-        change = 0.0  # rows that repeat each other differ by rounding alone
-    bounded = bool(full.at_bound or reduced.at_bound)
-    return NestedRows(full.model, reduced.model, test.F, test.df1, test.df2, test.p, change, not bounded)
+    rows = []
+    for full, reduced in ((by_model[full], by_model[reduced]) for full, reduced in NESTED_PAIRS):
+        parameters = {"n_parameters_full": full.n_parameters, "n_parameters_reduced": reduced.n_parameters}
+        test = nested_f_test(full.sse, reduced.sse, n=full.n, **parameters)
+        change = 100.0 * (reduced.rmse / full.rmse - 1.0) if full.rmse > 0 else float("nan")
+        if abs(change) <= EQUAL_PERCENT:
+            change = 0.0  # rows that repeat each other differ by rounding alone
+        bounded = bool(full.at_bound or reduced.at_bound)
+        rows.append(NestedRows(full.model, reduced.model, *test, change, not bounded))
+    return tuple(rows)
 
 
 def bootstrap_intervals(
@@ -80,7 +77,9 @@ def bootstrap_intervals(
     if readings.n_series < 2:  # one experiment cannot show how experiments differ
         return {model: np.full((4, 2), np.nan) for model in MODELS if model.n_parameters}
     fits = [_HardnessRows.of(readings, symbol, hardnesses[symbol]) for symbol in DEFINITIONS]
-    stacked = _in_groups(np.hstack([rows.products for rows in fits]), rng)
+    stacked = np.hstack([rows.products for rows in fits])
+    if (m := len(stacked)) > MOST_UNITS:  # groups of equal size (± 1)
+        stacked = np.add.reduceat(stacked[rng.permutation(m)], np.arange(MOST_UNITS) * m // MOST_UNITS, axis=0)
     samples: dict[Model, list[FloatArray]] = {model: [] for rows in fits for model in rows.models}
     done = 0
     for counts in resampling_counts(len(stacked), n_resamples, rng):
@@ -122,23 +121,9 @@ class _HardnessRows:
         projection = self.basis.projection(model)
         normal = projection.T @ gram @ projection
         fitted = non_negative_fits(normal, totals[:, -4:] @ projection)
-        fitted[_undetermined(normal)] = np.nan
+        # undetermined: no experiment at one end
+        length = np.sqrt(np.einsum("bii->bi", normal))
+        scale = np.where(length > 0, length, 1.0)
+        determinant = np.linalg.det(normal / scale[:, :, None] / scale[:, None, :])
+        fitted[~(length > 0).all(axis=1) | ~(determinant > MINIMUM_DETERMINANT)] = np.nan
         return self.basis.coefficients(fitted @ projection.T + self.basis.offset(model))
-
-
-def _undetermined(normal: FloatArray) -> BoolArray:
-    """True for normal matrices (B, p, p) with an undetermined coefficient: no experiment at one end."""
-    length = np.sqrt(np.einsum("bii->bi", normal))
-    present = (length > 0).all(axis=1)
-    scale = np.where(length > 0, length, 1.0)
-    determinant: FloatArray = np.linalg.det(normal / scale[:, :, None] / scale[:, None, :])
-    return ~present | ~(determinant > MINIMUM_DETERMINANT)
-
-
-def _in_groups(products: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Sum the experiments' products over random groups of equal size (± 1) where there are very many experiments."""
-    m = len(products)
-    if m <= MOST_UNITS:
-        return products
-    shuffled = products[rng.permutation(m)]
-    return np.add.reduceat(shuffled, np.arange(MOST_UNITS) * m // MOST_UNITS, axis=0)

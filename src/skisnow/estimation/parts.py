@@ -194,28 +194,20 @@ def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
     """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
     unread = ", ".join(campaign.unread_files)
     note = Message("Not read, as no table of a campaign has this name: {listed}.", listed=unread)
-    return (*_similar_name_notes(campaign), *_untested_site_notes(campaign), *((note,) if unread else ()))
+    return (*_site_notes(campaign), *((note,) if unread else ()))
 
 
-def _test_sites(campaign: Campaign) -> set[str]:
-    """Sites with a penetration or shear test."""
-    return {site for tests in (campaign.penetration, campaign.shear) if tests is not None for site in tests.site}
-
-
-def _snow_data_sites(campaign: Campaign) -> dict[str, set[str]]:
-    """Sites in each table of snow data, by file."""
+def _site_notes(campaign: Campaign) -> Iterator[str]:
+    """Sentences about site names that differ only by capitals and spaces, then snow data of sites without any test."""
+    tested = {site for tests in (campaign.penetration, campaign.shear) if tests is not None for site in tests.site}
     tables = {
         "density.csv": campaign.density,
         "drop_cone.csv": campaign.drop_cone,
         "snow_micro_pen.csv": campaign.snow_micro_pen,
     }
-    return {name: set(table.site) for name, table in tables.items() if table is not None}
-
-
-def _similar_name_notes(campaign: Campaign) -> Iterator[str]:
-    """Sentences about site names that differ only by capitals and spaces."""
+    sampled = {name: set(table.site) for name, table in tables.items() if table is not None}
     names: dict[str, set[str]] = {}
-    for site in _test_sites(campaign).union(*_snow_data_sites(campaign).values()):
+    for site in tested.union(*sampled.values()):
         names.setdefault("".join(site.split()).casefold(), set()).add(site)
     for variants in sorted(sorted(variants) for variants in names.values() if len(variants) > 1):
         listed = [repr(name) for name in variants]
@@ -224,14 +216,7 @@ def _similar_name_notes(campaign: Campaign) -> Iterator[str]:
             "you mean one site?",
             listed=listed,
         )
-
-
-def _untested_site_notes(campaign: Campaign) -> Iterator[str]:
-    """Remarks on snow data from sites without any test; none if the campaign has no tests at all."""
-    tested = _test_sites(campaign)
-    if not tested:  # recordings or samples alone
-        return
-    for name, sites in _snow_data_sites(campaign).items():
+    for name, sites in sampled.items() if tested else ():  # without a test there are recordings or samples alone
         lost = sorted(sites - tested)
         if lost:
             listed = [repr(site) for site in lost]

@@ -19,8 +19,7 @@ from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..snow.published import hand_hardness
 from ..snow.published.moessner_2013 import SNOW_DENSITY_RANGE, failure_shear_stress_from_density
 from .analysis import Analysis
-from .errors_in_depth import VolumeFactor
-from .parts import SiteMean, campaign_notes
+from .parts import campaign_notes
 from .regressions import Regression
 from .result_rows import (
     Columns,
@@ -34,7 +33,6 @@ from .result_rows import (
     without_nan,
 )
 from .snow_micro_pen import snow_micro_pen_results
-from .unloading import SiteUnloading
 from .weather import weather_results
 
 Json: TypeAlias = dict[str, Any]
@@ -70,7 +68,18 @@ def results_dict(analysis: Analysis) -> Json:
         "penetration": _penetration_json(analysis),
         "shear": _shear_json(analysis),
         "regressions": [_regression_json(regression) for regression in analysis.regressions],
-        "site_means": [_site_mean(row) for row in analysis.site_means],
+        "site_means": [
+            {
+                "quantity": row.quantity,
+                "site": row.site,
+                "n": row.n,
+                "mean": row.own.value,
+                "interval": [row.own.low, row.own.high],
+                "range": [row.own.minimum, row.own.maximum],
+                "letters": row.letters,  # sites that share one are not shown to differ
+            }
+            for row in analysis.site_means
+        ],
         "group_comparisons": [asdict(row) | {"interval": row.interval.tolist()} for row in analysis.group_comparisons],
         "comparisons": [row.as_dict() for row in analysis.comparisons],
         "provenance": _provenance_json(analysis),
@@ -166,7 +175,7 @@ def _penetration_json(analysis: Analysis) -> Json:
             "unloading": [],
             "growing_hardness": {"experiments": [], "sites": []},
         }
-    model, fitted, growing = estimates.model, estimates.fitted, estimates.growing
+    model, fitted, growing, factor = estimates.model, estimates.fitted, estimates.growing, estimates.volume_factor
     seating: Columns = {
         "experiment": tests.experiment,
         "depth_offset_mm": model.offset / MM,
@@ -194,44 +203,38 @@ def _penetration_json(analysis: Analysis) -> Json:
         }
         for row in estimates.site_growth
     ]
+    unloading_of_sites = [
+        {
+            "site": row.site,
+            "n": row.n,
+            "unloading_ratio": row.ratio,
+            "unloading_ratio_interval": [row.low, row.high],
+            "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
+            "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
+            "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
+        }
+        for row in estimates.site_unloading
+    ]
     return {
         "experiments": penetration_experiments(tests, estimates.screened, estimates),
         "models": model_rows(estimates.table),
         "tests": [nested_row(row) for row in estimates.nested],
         "selected": selected_model(estimates),
         "warnings": list(estimates.warnings),
-        "volume_factor": _volume_factor(estimates.volume_factor),
+        "volume_factor": None
+        if factor is None
+        else {
+            "n_series": factor.n,
+            "b_raw": factor.raw,
+            "b_raw_expected": factor.expected_raw,
+            "b": factor.value,
+            "b_interval": [factor.low, factor.high],
+        },
         "campaign_model": campaign_model_results(model, estimates.unloading),
         "seating": column_rows(seating),
         "errors_in_depth": {"models": model_rows(estimates.errors_in_depth), "experiments": column_rows(hardness)},
-        "unloading": [_site_unloading(row) for row in estimates.site_unloading],
+        "unloading": unloading_of_sites,
         "growing_hardness": {"experiments": column_rows(growth), "sites": growth_of_sites},
-    }
-
-
-def _volume_factor(factor: VolumeFactor | None) -> Json | None:
-    """JSON of the factor b of the volume, raw and corrected, with its interval; None without an estimate."""
-    if factor is None:
-        return None
-    return {
-        "n_series": factor.n,
-        "b_raw": factor.raw,
-        "b_raw_expected": factor.expected_raw,
-        "b": factor.value,
-        "b_interval": [factor.low, factor.high],
-    }
-
-
-def _site_unloading(row: SiteUnloading) -> Json:
-    """JSON of a site's unloading: ratio, rebound, and stiffness k_u (N/mm³), each with its interval."""
-    return {
-        "site": row.site,
-        "n": row.n,
-        "unloading_ratio": row.ratio,
-        "unloading_ratio_interval": [row.low, row.high],
-        "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
-        "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
-        "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
     }
 
 
@@ -261,7 +264,7 @@ def _regression_json(regression: Regression) -> Json:
     if fit is not None:
         numbers = {
             "b": fit.coefficients.tolist(),
-            "interval": [list(pair) for pair in fit.intervals.tolist()],
+            "interval": fit.intervals.tolist(),
             "rmse": float(fit.rmse),
             "rmse_dof": float(fit.rmse_dof),
             "r2": float(fit.r2),
@@ -277,21 +280,7 @@ def _regression_json(regression: Regression) -> Json:
         "predictor_values": regression.predictor_values,
         **numbers,
         "withheld": regression.withheld,
-        "interval_by_site": None if by_site is None else [list(pair) for pair in by_site.tolist()],
-    }
-
-
-def _site_mean(row: SiteMean) -> Json:
-    """JSON of a site's mean with interval, range and letters; a shared letter: not shown to differ."""
-    own = row.own
-    return {
-        "quantity": row.quantity,
-        "site": row.site,
-        "n": row.n,
-        "mean": own.value,
-        "interval": [own.low, own.high],
-        "range": [own.minimum, own.maximum],
-        "letters": row.letters,
+        "interval_by_site": None if by_site is None else by_site.tolist(),
     }
 
 

@@ -161,7 +161,13 @@ def evaluate_profile(
 
     Source: The page docs/methods/snow-micro-pen.md.
     """
-    top = _surface(profile, settings, surface)
+    top: SnowSurface | None
+    if math.isnan(surface):
+        rise, hold = settings.surface_rise, settings.surface_hold
+        top = snow_surface(profile.force, profile.sample_distance, rise=rise, hold=hold)
+    else:
+        air = profile.force[: round(surface / profile.sample_distance)]
+        top = SnowSurface(surface, float(np.median(air)) if len(air) else 0.0)
     flags = [CANCELLED] if is_cancelled else []
     if top is None:
         return EvaluatedRecording((*flags, NO_SURFACE))
@@ -177,14 +183,6 @@ def evaluate_profile(
     windows = {name: _window_means(part, profile.sample_distance, area, name) for name in PENETROMETER_RELATIONS}
     mean, median = float(part.mean()), float(np.median(part))
     return EvaluatedRecording(tuple(flags), top.depth, reach, top.air_force, mean, median, mean / area, windows)
-
-
-def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, stated: float) -> SnowSurface | None:
-    """The stated surface with the median of the force before it; otherwise the estimated one."""
-    if not math.isnan(stated):
-        air = profile.force[: round(stated / profile.sample_distance)]
-        return SnowSurface(stated, float(np.median(air)) if len(air) else 0.0)
-    return snow_surface(profile.force, profile.sample_distance, rise=settings.surface_rise, hold=settings.surface_hold)
 
 
 @dataclass(frozen=True, slots=True)

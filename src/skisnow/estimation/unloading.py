@@ -134,6 +134,9 @@ def unloading(
     half = np.where(below_step & np.isfinite(half), bound, half)
     ends = np.stack((s - half, s + half), axis=-1)
     ratio, ratio_ends = _stiffness_ratio(s, ends)
+    stiffness = ratio * hardness.value
+    with np.errstate(invalid="ignore", divide="ignore"):  # half-widths of logarithms add as squares
+        half = np.hypot(np.log(ratio_ends / ratio[:, None]), np.log(hardness.interval / hardness.value[:, None]))
     return Unloading(
         n_readings=np.zeros(m, dtype=np.int64) if back is None else back.count,
         rebound_ratio=s,
@@ -141,8 +144,8 @@ def unloading(
         rebound_ratio_interval=ends,
         unloading_ratio=ratio,
         unloading_ratio_interval=ratio_ends,
-        unloading_stiffness=ratio * hardness.value,
-        unloading_stiffness_interval=_product_interval((ratio, ratio_ends), (hardness.value, hardness.interval)),
+        unloading_stiffness=stiffness,
+        unloading_stiffness_interval=stiffness[:, None] * np.exp(half * np.array([-1.0, 1.0])),
         below_step=below_step,
         rebound_scatter=scatter,
         rebound_freedom=freedom,
@@ -271,13 +274,6 @@ def _stiffness_ratio(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, Float
     positive = (ends[..., 0] > 0)[..., None]
     turned = np.divide(1.0, ends[..., ::-1], out=np.full(ends.shape, np.nan), where=positive & (ends > 0))
     return ratio, turned
-
-
-def _product_interval(first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, FloatArray]) -> FloatArray:
-    """Interval of a product of two independent values: the half-widths of the logarithms add as squares."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        half = np.hypot(*(np.log(ends / value[:, None]) for value, ends in (first, second)))
-        return np.asarray((first[0] * second[0])[:, None] * np.exp(half * np.array([-1.0, 1.0])))
 
 
 def site_unloading(series: Unloading, used: BoolArray, site: Sequence[str]) -> tuple[SiteUnloading, ...]:

@@ -47,6 +47,9 @@ class Tool(abc.ABC):
     campaign files.
     """
 
+    def __post_init__(self) -> None:
+        require_declared(self)
+
     @abc.abstractmethod
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Contact area A projected on the snow surface (m²) at penetration depth e (m, ≥ 0), edge angle ϑ (rad)."""
@@ -97,9 +100,6 @@ class SkiPiece(Tool):
     length: Annotated[float, _length_quantity("length_mm", "length along the edge")]
     width: Annotated[float, _length_quantity("width_mm", "width of the base")]
 
-    def __post_init__(self) -> None:
-        require_declared(self)
-
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Contact area (m²) at depth e (m), edge angle (rad): L e / tan ϑ for the wedge, then the whole base."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
@@ -146,9 +146,6 @@ class PlainWedge(Tool):
     length: Annotated[float, _length_quantity("length_mm", "length along the edge")]
     width: Annotated[float, _length_quantity("width_mm", "width of the base")]
 
-    def __post_init__(self) -> None:
-        require_declared(self)
-
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Contact area (m²) at depth e (m) and edge angle (rad): L e / tan ϑ, or L W if flat."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
@@ -186,9 +183,6 @@ class Disc(Tool):
     """
 
     diameter: Annotated[float, _length_quantity("diameter_mm", "diameter")]
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
     @property
     def _face_area(self) -> float:
@@ -230,9 +224,6 @@ class LyingCylinder(Tool):
 
     radius: Annotated[float, _length_quantity("radius_mm", "radius")]
     width: Annotated[float, _length_quantity("width_mm", "length along the axis")]
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
     def _half_chord(self, e: FloatArray) -> FloatArray:
         """Half width (m) of the section at depth e (m): √(e (2 R - e)), at most R."""

@@ -208,25 +208,19 @@ def first_gates(line: RacingLine, gates: int) -> RacingLine:
     return RacingLine(replace(line.course, gates=line.course.gates[:gates]), line.start, line.turns[:gates])
 
 
-def line_rows(line: RacingLine) -> list[list[str]]:
-    """Cells of a line's CSV table, one row for each gate, without the header."""
-    rows = []
-    breaks = line.breaks
+def write_line(line: RacingLine, path: Path) -> None:
+    """Write a line as CSV, one row for each gate.
+
+    Raises OutputError: the place cannot be written.
+    """
+    rows, breaks = [], line.breaks
     for i, (gate, turn) in enumerate(zip(line.course.gates, line.turns, strict=True)):
         x, y = line.apexes[i + 1]
         begins = breaks[3 * i + 2]
         ends = breaks[3 * i + 4] if 3 * i + 4 < len(breaks) else x
         numbers = [repr(getattr(turn, name)) for name in NUMBERS]
         rows.append([gate.name, *numbers, *(f"{number:.6g}" for number in (x, y, begins, ends))])
-    return rows
-
-
-def write_line(line: RacingLine, path: Path) -> None:
-    """Write a line as CSV.
-
-    Raises OutputError: the place cannot be written.
-    """
-    write_file(path, csv_text([COLUMNS, *line_rows(line)]))
+    write_file(path, csv_text([COLUMNS, *rows]))
 
 
 def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingLine:

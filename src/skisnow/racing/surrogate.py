@@ -190,7 +190,13 @@ def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     """Times (n,) (s) at the last gate, limited to an upper value, which races that do not reach it also get."""
-    times = np.array([_time_at_last_gate(evaluation) for evaluation in evaluations])
+    times = np.full(len(evaluations), math.inf)
+    for number, evaluation in enumerate(evaluations):
+        gates = evaluation.row.get("gates")
+        if evaluation.value < NOT_PASSED:
+            times[number] = evaluation.value
+        elif gates and gates[-1][1] is not None:  # it reached the last gate, but not by an allowed line
+            times[number] = gates[-1][1]
     finite = np.isfinite(times)
     if not finite.any():
         return np.array([math.log(min(evaluation.value, 1e6)) for evaluation in evaluations])
@@ -209,14 +215,6 @@ def margins_of(evaluations: Sequence[Evaluated]) -> FloatArray:
             if margin is not None:
                 out[i, j] = min(max(margin, -MOST_MARGIN), MOST_MARGIN)
     return out
-
-
-def _time_at_last_gate(evaluation: Evaluated) -> float:
-    """Time (s) of an evaluation at its last gate, also without an allowed line; infinite if it is unknown."""
-    if evaluation.value < NOT_PASSED:
-        return evaluation.value
-    gates = evaluation.row.get("gates")
-    return float(gates[-1][1]) if gates and gates[-1][1] is not None else math.inf
 
 
 def _log_improvement(hope: FloatArray) -> FloatArray:
@@ -339,7 +337,11 @@ class SurrogateSearch:
         """Places of the next batch; each is chosen as if the earlier ones had been evaluated as predicted."""
         evaluations = self.batches.found
         prospects = Prospects.of(evaluations, self.kinds)
-        centre = self._steps_along(directions, np.array(self._best_predicted(prospects).place))
+        best, passed = self.batches.least, passed_of(evaluations)
+        if passed.any():  # the smallest predicted time of the lines that pass all gates
+            expected = prospects.time.at(np.array([evaluation.place for evaluation in evaluations]))[0]
+            best = evaluations[int(np.argmin(np.where(passed, expected, np.inf)))]
+        centre = self._steps_along(directions, np.array(best.place))
         chosen: list[FloatArray] = []
         for daring in BATCH:
             seed = (*self.seed, phase, len(evaluations), len(chosen))
@@ -352,15 +354,6 @@ class SurrogateSearch:
             chosen.append(place)
             prospects = prospects.with_mean_at(place)
         return chosen
-
-    def _best_predicted(self, prospects: Prospects) -> Evaluated:
-        """Evaluation that passes all gates with the smallest predicted time; without one, that with the least value."""
-        evaluations = self.batches.found
-        passed = passed_of(evaluations)
-        if not passed.any():
-            return self.batches.least
-        expected = prospects.time.at(np.array([evaluation.place for evaluation in evaluations]))[0]
-        return evaluations[int(np.argmin(np.where(passed, expected, np.inf)))]
 
     @staticmethod
     def _steps_along(directions: FloatArray, place: FloatArray) -> FloatArray:

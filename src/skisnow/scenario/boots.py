@@ -119,19 +119,6 @@ class Boots(Shown):
 
     def _require_sound(self) -> None:
         """Reject wrong shapes, numbers, axes and choices, rows that do not rise, and the slope frame over distance."""
-        self._require_shapes()
-        self._require_numbers()
-        _require_rising(self.at, lambda row: Message("boots: {over} of row {row}", over=self.over, row=row + 1))
-        self._require_rotations()
-        require_choice("boots: frame", self.frame, get_args(Frame))
-        require_choice("boots: over", self.over, get_args(Over))
-        if self.frame == "slope" and self.over == "distance":
-            raise ParameterError(
-                "boots in the slope's frame are given over time: the distance follows from their motion"
-            ).tag("contradiction")
-
-    def _require_shapes(self) -> None:
-        """Reject too few poses, and places or axes whose shapes do not fit their number."""
         n = len(self.at) if self.at.ndim == 1 else 0
         if n < FEWEST_POSES or self.place.shape != (n, 2, 3) or self.axes.shape != (n, 2, 3, 3):
             raise ParameterError(
@@ -144,9 +131,6 @@ class Boots(Shown):
                 shape_2=str(self.place.shape),
                 shape_3=str(self.axes.shape),
             )
-
-    def _require_numbers(self) -> None:
-        """Reject numbers that are not finite or too large."""
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ParameterError("boots: {name} contains a number that is not finite").tag(
@@ -156,14 +140,18 @@ class Boots(Shown):
                 raise ParameterError("boots: {name} has a number beyond ±{largest:g}. Correct it.").tag(
                     "out_of_range", name=name, largest=LARGEST
                 )
-
-    def _require_rotations(self) -> None:
-        """Reject axes that are not right-handed and orthonormal."""
+        _require_rising(self.at, lambda row: Message("boots: {over} of row {row}", over=self.over, row=row + 1))
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
             raise ParameterError("boots: axes are off by {off:.1e} from right-handed orthonormal ones").tag(
                 "not_a_rotation", off=off
             )
+        require_choice("boots: frame", self.frame, get_args(Frame))
+        require_choice("boots: over", self.over, get_args(Over))
+        if self.frame == "slope" and self.over == "distance":
+            raise ParameterError(
+                "boots in the slope's frame are given over time: the distance follows from their motion"
+            ).tag("contradiction")
 
     def _repr_facts(self) -> Facts:
         """Title with the number of poses, their range in time or distance, the frame and the source."""

@@ -18,7 +18,7 @@ from ..ski.ski_file import Sources
 from ..snow import SnowProperties, published_snow
 from ..snow.properties import require_stress
 from ..track.course import Course, course_names, read_course
-from .boots import Boots, read_boots
+from .boots import read_boots
 from .contact import ELASTIC, Contact
 from .keys import SCENARIO_KEYS, full_name
 from .resolution import CONDITIONS, DISPLACEMENT, H_V, S_F, UNLOADING, ContradictionError, Resolution
@@ -44,15 +44,13 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
         raise ParameterError("the run has no end: give run.duration_s or run.length_m").tag("no_data")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     course = _build_course(resolution, slope)
-    parts: dict[str, Any] = {
-        "slope": slope,
-        "contact": contact,
-        "ski": ski,
-        "course": course,
-        "boots": _build_boots(resolution),
-    }
-    if not any(name.startswith("skier.") for name in values):
-        parts["skier"] = None
+    boots = None
+    if "boots.file" in resolution.files:
+        edge_angle = math.radians(float(str(values["sledge.edge_angle_deg"])))
+        stance_width = float(str(values["sledge.stance_width_m"]))
+        boots = read_boots(resolution.files["boots.file"], edge_angle=edge_angle, stance_width=stance_width)
+    parts: dict[str, Any] = {} if any(name.startswith("skier.") for name in values) else {"skier": None}
+    parts |= {"slope": slope, "contact": contact, "ski": ski, "course": course, "boots": boots}
     return build_declared(Scenario, values, **parts), ski_warnings
 
 
@@ -67,15 +65,6 @@ def _require_key(values: Mapping[str, Any], name: str, remedy: Message) -> None:
 def _value_of(values: Mapping[str, Any], name: str) -> Any:
     """Value of a key, or its default."""
     return values.get(name, SCENARIO_KEYS[name].default)
-
-
-def _build_boots(resolution: Resolution) -> Boots | None:
-    """Poses of the boots from boots.file; None without a file."""
-    if "boots.file" not in resolution.files:
-        return None
-    edge_angle = math.radians(float(str(resolution.values["sledge.edge_angle_deg"])))
-    stance_width = float(str(resolution.values["sledge.stance_width_m"]))
-    return read_boots(resolution.files["boots.file"], edge_angle=edge_angle, stance_width=stance_width)
 
 
 def _build_slope(resolution: Resolution) -> Slope:
@@ -212,7 +201,6 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         parts["contact"] = replace(contact, snow=mapped, snow_map=snow_map)
     scenario = replace(scenario, **parts)
     _require_changeable(scenario, numbers)
-    _require_effect(scenario, numbers)
     measured = {"unloading": UNLOADING in numbers, "displacement": DISPLACEMENT in numbers}
     strengths: dict[str, Any] = {
         name: SCENARIO_KEYS[name].in_range(numbers[name]) for name in (H_V, S_F) if name in numbers
@@ -236,18 +224,6 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
         ) from error
 
 
-def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
-    """Reject a number that has no effect with the other values of the scenario."""
-    values = {**values_of(scenario), **numbers}
-    for name in numbers:
-        condition = CONDITIONS.get(name)
-        if condition is not None and not condition.holds(values.get(condition.key)):
-            raise ContradictionError(
-                (name, condition.key),
-                Message("{name} goes with {condition}. Change one of them", name=name, condition=condition.in_words),
-            )
-
-
 def _contact_on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     """The contact with another snow, whose k_u/H_V and u_y replace its own if the snow has them; without a map."""
     new = published_snow(snow) if isinstance(snow, str) else snow
@@ -262,7 +238,7 @@ def _contact_on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
 
 
 def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> None:
-    """Reject numbers that a snow map gives, and numbers of a part of another kind, such as the angle of a profile."""
+    """Reject numbers that a snow map gives, those of a part of another kind (angle of a profile), or without effect."""
     snow_map = scenario.contact.snow_map
     mapped = {} if snow_map is None else {H_V: snow_map.hardness, S_F: snow_map.failure_shear_stress}
     for name in numbers:
@@ -270,9 +246,18 @@ def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> No
             raise ParameterError(
                 "{name} is given by a map, snow.map_file, {source}. Remove the map with snow_map=None"
             ).tag("contradiction", name=name, source=snow_map.source)
-    for name in numbers.keys() - values_of(scenario).keys():
+    values = values_of(scenario)
+    for name in numbers.keys() - values.keys():
         part = name.partition(".")[0]
         raise ParameterError(
             "{name} has no effect in this scenario, whose {part} is of another kind. Remove it, or replace the part "
             "itself: {part}="
         ).tag("wrong_kind", name=name, part=part)
+    values |= numbers
+    for name in numbers:
+        condition = CONDITIONS.get(name)
+        if condition is not None and not condition.holds(values.get(condition.key)):
+            raise ContradictionError(
+                (name, condition.key),
+                Message("{name} goes with {condition}. Change one of them", name=name, condition=condition.in_words),
+            )

@@ -241,7 +241,18 @@ class Contact(Declared):
             raise ParameterError(
                 "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none"
             ).tag("contradiction")
-        self._require_consistent_friction()
+        if self.friction_law is None:
+            if self.temperature is not None or self.liquid_water is not None:
+                raise ParameterError(
+                    "friction.temperature_C and friction.liquid_water_percent go with friction.law_file. Add it, or "
+                    "remove them"
+                ).tag("contradiction")
+        elif self.friction != 0.0 or self.friction_by_speed != 0.0:
+            raise ParameterError("friction.law_file gives μ. Set friction.mu_0 and friction.mu_1_s_per_m to 0").tag(
+                "contradiction"
+            )
+        else:
+            self.friction_law.at(self.temperature, self.liquid_water or 0.0)
         if self.layers is not None and (self.layer_depth is not None or self.hardness_growth > 0.0):
             raise ParameterError(
                 "snow.layers_file gives the hardness over the depth. Remove it, or snow.layer_depth_mm and "
@@ -258,21 +269,6 @@ class Contact(Declared):
             raise ParameterError(
                 "layers of snow cannot be combined with snow.damping_N_s_per_mm3 or snow.delayed_share. Remove one"
             ).tag("contradiction")
-
-    def _require_consistent_friction(self) -> None:
-        """Reject a friction law together with μ, or the law's temperature and water without a law."""
-        if self.friction_law is None:
-            if self.temperature is not None or self.liquid_water is not None:
-                raise ParameterError(
-                    "friction.temperature_C and friction.liquid_water_percent go with friction.law_file. Add it, or "
-                    "remove them"
-                ).tag("contradiction")
-        elif self.friction != 0.0 or self.friction_by_speed != 0.0:
-            raise ParameterError("friction.law_file gives μ. Set friction.mu_0 and friction.mu_1_s_per_m to 0").tag(
-                "contradiction"
-            )
-        else:
-            self.friction_law.at(self.temperature, self.liquid_water or 0.0)
 
     @property
     def glide_friction(self) -> FrictionLaw:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from .._support.errors import ParameterError, most_similar, suggest_and_list
@@ -42,17 +42,12 @@ def full_name(name: str) -> str:
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
     short = most_similar(key, _FULL_NAMES)
     similar = most_similar(name, keys) or (_FULL_NAMES[short] if short else most_similar(name, SCENARIO_KEYS))
-    raise ParameterError(_unknown_key(name, similar, keys)).tag("unknown_name")
-
-
-def _unknown_key(name: str, similar: str | None, allowed: Sequence[str]) -> Message:
-    """Message for an unknown key of a scenario, with a similar key (None: no suggestion) and the allowed ones."""
     sentences = [Message("{name} is not a key of a scenario.", name=name)]
     if similar:
         sentences.append(Message("Did you mean {similar}?", similar=similar))
-    if allowed:
-        sentences.append(Message("Allowed: {allowed}.", allowed=allowed))
-    return joined(sentences)
+    if keys:
+        sentences.append(Message("Allowed: {allowed}.", allowed=keys))
+    raise ParameterError(joined(sentences)).tag("unknown_name")
 
 
 def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
@@ -146,15 +141,10 @@ def short_name(key: str) -> str:
     return without_unit(own.partition(".")[2]) + at + run
 
 
-def _spellings(key: str) -> tuple[str, str, str, str]:
-    """Spellings of a full key that users may write: with and without section, each with and without unit."""
-    bare = key.partition(".")[2]
-    return key, bare, without_unit(key), without_unit(bare)
-
-
 _KEYS_BY_WORD: Final[dict[str, list[str]]] = {}
 for _key in SCENARIO_KEYS:
-    for _word in dict.fromkeys(_spellings(_key)):
+    _bare = _key.partition(".")[2]
+    for _word in dict.fromkeys((_key, _bare, without_unit(_key), without_unit(_bare))):
         _KEYS_BY_WORD.setdefault(_word, []).append(_key)
 
 
@@ -192,20 +182,17 @@ def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
     """
     listed = words.split(",") if isinstance(words, str) else list(words)
     try:
-        keys = [_key_of_run(word) for word in listed if word.strip()]
+        keys = []
+        for word in filter(str.strip, listed):
+            own, at, run = (part.strip() for part in word.partition("@"))
+            if at and not run:
+                raise ParameterError("behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}").tag(
+                    "missing", word=word, own=own, each=EACH
+                )
+            keys.append(free_key(own) + at + run)
     except ParameterError as error:
         raise error.at("--free") from None
     for key in keys:
         if keys.count(key) > 1:
             raise ParameterError("--free: {key} is named twice. Remove one of them").tag("repeated", key=key)
     return tuple(keys)
-
-
-def _key_of_run(word: str) -> str:
-    """Full name of the key in KEY or KEY@RUN, with its run."""
-    own, at, run = word.partition("@")
-    if at and not run.strip():
-        raise ParameterError("behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}").tag(
-            "missing", word=word, own=own.strip(), each=EACH
-        )
-    return free_key(own) + at + run.strip()

@@ -97,21 +97,15 @@ def map_system(text: str) -> MapSystem:
     old = _OLD_UNIT.search(places)
     unit = _factor(units[-1][1]) if units else length_unit(old[1]) if old else None
     in_degrees = not projected and _DEGREES.search(places) is not None
+    height_units, old_height = _UNIT.findall(heights), _OLD_HEIGHT_UNIT.search(text)
+    height_unit = length_unit(old_height[1]) if old_height and "[" not in text else None
     return MapSystem(
         text=text,
         in_degrees=in_degrees,
         unit=1.0 if in_degrees or unit is None else unit,
-        height_unit=_height_unit(text, heights),
+        height_unit=_factor(height_units[-1][1]) if height_units else height_unit,
         downwards=re.search(r'AXIS\s*\[\s*"[^"]*"\s*,\s*DOWN\b', heights, re.IGNORECASE) is not None,
     )
-
-
-def _height_unit(text: str, heights: str) -> float | None:
-    """Metres per unit of height in a map system's text; None if it states none."""
-    units, old = _UNIT.findall(heights), _OLD_HEIGHT_UNIT.search(text)
-    if units:
-        return _factor(units[-1][1])
-    return length_unit(old[1]) if old and "[" not in text else None
 
 
 def require_true_lengths(path: object, system: MapSystem, x: float, y: float) -> None:

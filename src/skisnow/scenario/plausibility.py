@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterator
 from typing import Final
 
 from .._support.errors import RangeWarning
@@ -26,60 +27,45 @@ def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
     return (
         *model_limits(scenario.ski).values(),
-        *_angles_in_radians(scenario),
-        *_hardness_in_other_unit(scenario),
+        *_values_in_other_units(scenario),
         *_outside_ranges(scenario),
         *_incomplete_boot_poses(scenario),
     )
 
 
-def _angles_in_radians(scenario: Scenario) -> list[str]:
-    """Warnings for angles so small that they were probably given in radians; empty for others."""
+def _values_in_other_units(scenario: Scenario) -> Iterator[str]:
+    """Warnings for angles that were probably given in radians, and for a hardness that probably was in N/m³."""
     angles = {"sledge.edge_angle_deg": scenario.sledge.edge_angle}
     if isinstance(scenario.slope, Plane):
         angles["slope.angle_deg"] = scenario.slope.angle
-    texts: list[str] = []
     for name, angle in angles.items():
         degrees_read = math.degrees(angle)
         meant = in_degrees_if_radians(abs(degrees_read))
         if meant is not None:
-            degrees = math.copysign(meant, degrees_read)
-            texts.append(
-                Message(
-                    "{name} is {value:.4g}: that looks like radians. If it is, write {degrees:.4g}",
-                    name=name,
-                    value=degrees_read,
-                    degrees=degrees,
-                )
+            yield Message(
+                "{name} is {value:.4g}: that looks like radians. If it is, write {degrees:.4g}",
+                name=name,
+                value=degrees_read,
+                degrees=math.copysign(meant, degrees_read),
             )
-    return texts
-
-
-def _hardness_in_other_unit(scenario: Scenario) -> list[str]:
-    """Warning for a hardness so large that it was probably given in N/m³; empty for others."""
     hardness = scenario.contact.snow.snow_hardness / N_PER_MM3
-    if hardness <= GREATEST_LIKELY_HARDNESS:
-        return []
-    return [
-        Message(
+    if hardness > GREATEST_LIKELY_HARDNESS:
+        yield Message(
             "snow.H_V_N_per_mm3 is {hardness:.4g}: is it in N/m³? If it is, write {converted:.4g}",
             hardness=hardness,
             converted=hardness / N_PER_MM3,
         )
-    ]
 
 
-def _incomplete_boot_poses(scenario: Scenario) -> list[str]:
+def _incomplete_boot_poses(scenario: Scenario) -> Iterator[str]:
     """Warning if the poses in boots.file do not cover the whole run; empty if they do."""
     boots = scenario.boots
     if boots is None:
-        return []
+        return
     end, unit = (scenario.stop.duration, "s") if boots.over == "time" else (scenario.stop.length, "m")
     first, last = float(boots.at[0]), float(boots.at[-1])
-    if end is None or (first <= 0.0 and last >= end):
-        return []
-    return [
-        Message(
+    if end is not None and (first > 0.0 or last < end):
+        yield Message(
             "boots.file ({source}) has poses from {first:g} to {last:g} {unit} of a run from 0 to {end:g} {unit}: "
             "before and after them the boots rest",
             source=boots.source,
@@ -88,7 +74,6 @@ def _incomplete_boot_poses(scenario: Scenario) -> list[str]:
             end=end,
             unit=unit,
         )
-    ]
 
 
 ABOUT: Final = Message("a simulated run")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
-from .._support.errors import ParameterError, RangeWarning
+from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.law import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
 from ..parameters import Allowed, Condition, Declared, Label, Quantity, Search, require_declared
+from ..snow.measured_range import without_range_warnings
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 
 
@@ -239,8 +239,7 @@ class Shear(Declared):
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:
         """Shear law in snow with this S_f (N/m²); None for a constant S_f."""
-        with warnings.catch_warnings():  # a scenario has separate warnings about unmeasured ranges
-            warnings.simplefilter("ignore", RangeWarning)
+        with without_range_warnings():  # a scenario has separate warnings about unmeasured ranges
             if self.law == "by-angle":
                 return AngleShear(flat_shear_stress=failure_shear_stress, relative_decrease=self.relative_decrease)
             if self.law == "by-density" and self.snow_density is not None:

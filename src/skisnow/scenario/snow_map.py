@@ -165,7 +165,12 @@ def read_snow_map(path: str | Path) -> SnowMap:
     Raises ParameterError: the file cannot be read, a column is missing, a cell has no number above 0, or places do not
         form a grid; file, row, column and value are named.
     """
-    rows = [_checked_row(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
+    rows = []
+    for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION):
+        for name in filter(row.cells.__contains__, SIZES):
+            if not number_within(row, name) > 0.0:
+                raise row.refused(name, Message("A number above 0 is needed."), code="out_of_range")
+        rows.append(row)
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
         raise ParameterError("{path}: no column of {columns}, or no row. {action}").tag(
@@ -185,14 +190,6 @@ def read_snow_map(path: str | Path) -> SnowMap:
         )
     except ParameterError as error:
         raise error.at(path) from error
-
-
-def _checked_row(row: CsvRow) -> CsvRow:
-    """The row, after a check that its snow properties are above 0."""
-    for name in SIZES:
-        if name in row.cells and not number_within(row, name) > 0.0:
-            raise row.refused(name, Message("A number above 0 is needed."), code="out_of_range")
-    return row
 
 
 def _grids_along_x(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:

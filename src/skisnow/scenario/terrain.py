@@ -223,16 +223,12 @@ def normals_of(slope: Slope, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
     """Unit normals (…, 3) out of the snow at places x, y (m, of one shape)."""
     if isinstance(slope, Plane):
         return np.broadcast_to([0.0, 0.0, 1.0], (*np.broadcast_shapes(np.shape(x), np.shape(y)), 3))
-    along_x, along_y = _gradients(slope, np.asarray(x, float), np.asarray(y, float))
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    along_x, along_y = (
+        slope.surface.gradients(x, y) if isinstance(slope, Terrain) else (slope.gradients(x), np.zeros_like(x))
+    )
     stretch = np.sqrt(1.0 + along_x**2 + along_y**2)
     return np.stack([-along_x, -along_y, np.ones_like(along_x)], axis=-1) / stretch[..., None]
-
-
-def _gradients(slope: Profile | Terrain, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Slopes dz/dx and dz/dy of the surface at places (m); dz/dy is 0 for a profile."""
-    if isinstance(slope, Terrain):
-        return slope.surface.gradients(x, y)
-    return slope.gradients(x), np.zeros_like(x)
 
 
 def down_and_left(normal: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -248,14 +248,13 @@ class Run(Shown):
     def _repr_facts(self) -> Facts:
         """Title with the outcome, and rows with laws, length, speed, heading, radius, depth, energy and effort."""
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
+        finite = self.speed[np.isfinite(self.speed)]
+        fastest = amount(float(finite.max()) if finite.size else None, "m/s")
         law_names = ", ".join(f"{name} {law.partition('(')[0]}" for name, law in self.given_laws.items() if law)
         rows = (
             *([("laws", f"given in Python: {law_names}")] if law_names else []),
             ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
-            (
-                "speed",
-                f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_max_speed_text(self.speed)}",
-            ),
+            ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {fastest}"),
             ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),
             ("turn radius", "straight" if radius is None else f"{amount(radius, 'm')} (median)"),
             ("edge depth", f"maximum {amount(float(np.nanmax(self.skis.edge_depth)) / MM, 'mm')}"),
@@ -312,9 +311,3 @@ class Run(Shown):
         steady = (self.speed > STEADY_SPEED) & (self.time - self.time[0] >= STEADY_FROM)
         radius = np.abs(self.turn_radius[steady & np.isfinite(self.turn_radius)])
         return float(np.quantile(radius, share)) if radius.size else None
-
-
-def _max_speed_text(values: FloatArray) -> str:
-    """Largest finite speed as a text in m/s."""
-    finite = values[np.isfinite(values)]
-    return amount(float(finite.max()) if finite.size else None, "m/s")

@@ -45,7 +45,10 @@ def balance_of(run: Run) -> BalanceHistory:
     centre = boots.centre_of_mass - boots.place.mean(axis=1)
     aside, up = (np.einsum("na,na->n", centre, axis) for axis in (left, normal))
     load = np.einsum("nka,na->nk", boots.force, normal)
-    pressure = _pressure(boots, ahead, load.sum(axis=1))
+    arm = boots.place - boots.place.mean(axis=1, keepdims=True)
+    roll = np.einsum("na,na->n", (np.cross(arm, boots.force) + boots.moment).sum(axis=1), ahead)
+    both = load.sum(axis=1)
+    pressure = np.where(both > LEAST_LOAD, roll / np.where(both > LEAST_LOAD, both, 1.0), np.nan)
     lean = np.arctan2(aside, up)
     balanced, rolling = _balanced(run, normal, up)
     return BalanceHistory(
@@ -58,15 +61,6 @@ def balance_of(run: Run) -> BalanceHistory:
         pressure=pressure,
         load=load,
     )
-
-
-def _pressure(boots: BootHistory, ahead: FloatArray, load: FloatArray) -> FloatArray:
-    """Distance (m) of the centre of pressure from the middle of the boots, to the left; NaN without load."""
-    arm = boots.place - boots.place.mean(axis=1, keepdims=True)
-    moment = (np.cross(arm, boots.force) + boots.moment).sum(axis=1)
-    roll = np.einsum("na,na->n", moment, ahead)
-    bears = load > LEAST_LOAD
-    return np.where(bears, roll / np.where(bears, load, 1.0), np.nan)
 
 
 def _balanced(run: Run, normal: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -89,18 +83,13 @@ def _balanced(run: Run, normal: FloatArray, up: FloatArray) -> tuple[FloatArray,
     left = np.cross(normal, along)
     turning = np.einsum("na,na->n", acceleration, left) - fall * np.einsum("na,na->n", down, left)
     rising = across + np.einsum("na,na->n", acceleration, normal)
-    sledge = run.scenario.sledge
-    by_roll = sledge.inertia[0] * _rolling(run) / (sledge.mass * np.maximum(up, 1e-3))
+    sledge, axis = run.scenario.sledge, run.attitude[:, :, 2]
+    spin = np.cross(axis, np.gradient(axis, run.time, axis=0))
+    rolling = np.gradient(-np.einsum("na,na->n", spin, run.attitude[:, :, 0]), run.time)  # to the left (rad/s²)
+    by_roll = sledge.inertia[0] * rolling / (sledge.mass * np.maximum(up, 1e-3))
     out = np.array([np.arctan2(turning, across), np.arctan2(turning + by_roll, np.maximum(rising, 1e-3))])
     out[:, [0, 1, -2, -1]] = np.nan
     return out[0], out[1]
-
-
-def _rolling(run: Run) -> FloatArray:
-    """Angular acceleration of the body about its own axis ahead, to the left (rad/s²)."""
-    axis = run.attitude[:, :, 2]
-    spin = np.cross(axis, np.gradient(axis, run.time, axis=0))
-    return np.asarray(np.gradient(-np.einsum("na,na->n", spin, run.attitude[:, :, 0]), run.time))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)

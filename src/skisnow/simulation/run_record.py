@@ -93,7 +93,9 @@ class Record:
         parts = moment_parts(rows, self.setup.dynamics.body.skis)
         time, energies = parts["time"], stored_and_lost(parts)
         normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
-        bent = at_nodes(parts["beam_dofs"], self.setup.dynamics.body.skis[0].unknown)
+        unknown, dofs = self.setup.dynamics.body.skis[0].unknown, parts["beam_dofs"]
+        bent = np.zeros((*dofs.shape[:-1], len(unknown), 3))  # 0 where the beam is held
+        bent[..., unknown >= 0, :] = dofs.reshape(*dofs.shape[:-1], -1, 3)
         along = np.moveaxis(parts["along"], 2, 0)
         values = dict(zip(_ALONG, (*along, bent[..., 0], bent[..., 2]), strict=True))
         node, history = self.setup.node, self._boots(parts)
@@ -179,13 +181,6 @@ def stored_and_lost(parts: Mapping[str, FloatArray]) -> FloatArray:
     stored = (*parts["energies"].T, pressure + sheared + stuck, delayed)
     lost = (penetration, shear, friction, drag, damping, rate)
     return np.stack([*stored, *lost, *parts["work_given"].T], axis=1)
-
-
-def at_nodes(dofs: FloatArray, unknown: FloatArray) -> FloatArray:
-    """Unknowns of the free nodes (..., skis, n) at all nodes, zero where held: (..., skis, nodes, 3)."""
-    out = np.zeros((*dofs.shape[:-1], len(unknown), 3))
-    out[..., unknown >= 0, :] = dofs.reshape(*dofs.shape[:-1], -1, 3)
-    return out
 
 
 def _at_boot(node: FloatArray, values: FloatArray) -> FloatArray:

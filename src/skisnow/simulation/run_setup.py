@@ -89,9 +89,9 @@ class Setup:
         drives = self.drives
         if not drives:
             return self.dynamics.advance(until)
-        while until - self.time > SAME_TIME:
+        while until - self.dynamics.time > SAME_TIME:
             for drive in drives:
-                if self.time > drive.until - SAME_TIME:
+                if self.dynamics.time > drive.until - SAME_TIME:
                     drive.move(self.dynamics, distance)
             due = min(drive.until for drive in drives)
             if due > until + SAME_TIME:
@@ -136,19 +136,9 @@ class Setup:
         return np.column_stack([ahead, np.cross(normal, ahead), normal])
 
     @property
-    def time(self) -> float:
-        """Time simulated so far (s)."""
-        return self.dynamics.time
-
-    @property
     def speed(self) -> float:
         """Speed of the boots' middle (m/s)."""
         return math.hypot(*(self.dynamics.velocity[:3] if self.drive is None else self.velocity).tolist())
-
-    @property
-    def touches(self) -> bool:
-        """True if a ski is in contact with the snow."""
-        return self.dynamics.touches
 
     @property
     def tilt(self) -> tuple[float, float]:
@@ -167,7 +157,9 @@ class Setup:
         ski = self.scenario.ski
         length = float(ski.station[0] - ski.station[-1])
         area = length * float(np.mean(ski.at(np.linspace(float(ski.station[-1]), float(ski.station[0]), 101)).width))
-        return self.numbers["load_N"] > hardness_at_start(self.scenario) * area * FLOATING_DEPTH
+        start = self.scenario.start
+        hardness = self.scenario.contact.hardness_at(start.x, start.y)
+        return self.numbers["load_N"] > hardness * area * FLOATING_DEPTH
 
     @property
     def past_end(self) -> bool:
@@ -256,7 +248,9 @@ def _boot_drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | No
             raise ParameterError("the boots move by boots.file and by a function; give one of them").tag(
                 "contradiction"
             )
-        if scenario.skier is not None and not _balances(boots):
+        # the balance control of a skier, or a control that passes its moments on to one
+        balances = any(isinstance(control, BalancedSkier) for control in (boots, getattr(boots, "skier", None)))
+        if scenario.skier is not None and not balances:
             raise ParameterError(
                 "boots: the scenario has a skier, whose control moves the boots. Use the scenario without it, "
                 "scenario.with_(skier=None), or a BalancedSkier."
@@ -269,11 +263,6 @@ def _boot_drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | No
     return BootDrive(TableControl(scenario.boots), held=scenario.boots.frame == "slope")
 
 
-def _balances(control: BootControl) -> bool:
-    """True for the balance control of a skier, and for a control that passes its moments on to one."""
-    return isinstance(control, BalancedSkier) or isinstance(getattr(control, "skier", None), BalancedSkier)
-
-
 def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
     """Setup with the sledge above the snow, before any motion; `snow` is reused with its tracks if given."""
     load, depth, wavelength = _contact(scenario)
@@ -281,14 +270,21 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
     elements, spacing = _mesh(solver, length, wavelength)
     ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness, finer_ends=True)
+    angle = scenario.slope.angle if isinstance(scenario.slope, Plane) else 0.0  # axes on a plane are inclined
     body = sledge_body(
-        scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity_vector(scenario),
+        scenario.sledge, ski, damping_ratio=scenario.damping_ratio,
+        gravity=scenario.gravity * np.array([math.sin(angle), 0.0, -math.cos(angle)]),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
     )  # fmt: skip
     snow = snow or _snow_field(scenario, laws or Laws())
     runner = Runner.of(scenario.ski, nodes=ski.node)
     contact = SnowContact(snow, [runner, runner], spacing=spacing)
-    dynamics = Dynamics(body, contact, *_start(scenario, depth), _step_control(scenario))
+    fast = solver.method == "fast"
+    control = StepControl(
+        first=solver.step, fixed=solver.fixed, tolerance=solver.tolerance * (FAST if fast else 1.0),
+        longest=FAST_LONGEST if fast else LONGEST_STEP,
+    )  # fmt: skip
+    dynamics = Dynamics(body, contact, *_start(scenario, depth), control)
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "load_N": load}
     return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf)
 
@@ -305,28 +301,15 @@ def _mesh(solver: Solver, length: float, wavelength: float) -> tuple[int, float]
     return solver.elements or elements, solver.line_spacing or spacing
 
 
-def _step_control(scenario: Scenario) -> StepControl:
-    """Step sizes (s) and tolerance of the scenario's solver; the fast method has larger ones."""
-    solver = scenario.solver
-    tolerance = solver.tolerance * (FAST if solver.method == "fast" else 1.0)
-    longest = FAST_LONGEST if solver.method == "fast" else LONGEST_STEP
-    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance, longest=longest)
-
-
-def hardness_at_start(scenario: Scenario) -> float:
-    """H_V (N/m³) where the sledge is set down."""
-    return scenario.contact.hardness_at(scenario.start.x, scenario.start.y)
-
-
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
     """Load of one ski at the start along the normal (N), edge depth if rigid, decay length 1/λ (m)."""
-    ski, sledge = scenario.flexing_ski, scenario.sledge
+    ski, sledge, start = scenario.flexing_ski, scenario.sledge, scenario.start
     station = np.asarray(ski.station)
     at = ski.at(np.linspace(float(station[-1]), float(station[0]), 101))
     length = float(station[0] - station[-1])
     mass = sledge.mass / 2.0 + float(np.mean(at.mass_per_length)) * length
-    load = mass * scenario.gravity * abs(float(normals_of(scenario.slope, scenario.start.x, scenario.start.y)[2]))
-    hardness, hardest = hardness_at_start(scenario), scenario.contact.greatest_hardness
+    load = mass * scenario.gravity * abs(float(normals_of(scenario.slope, start.x, start.y)[2]))
+    hardness, hardest = scenario.contact.hardness_at(start.x, start.y), scenario.contact.greatest_hardness
     tangent = math.tan(abs(sledge.edge_angle))
     width = float(np.mean(at.width))
     flat = load / (hardness * 0.8 * length * width)
@@ -338,22 +321,20 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
 
 def _snow_field(scenario: Scenario, laws: Laws) -> SnowField:
     """Snow of a scenario, with its snow map and with the given laws instead of the scenario's."""
-    contact = scenario.contact
-    over_place = contact.snow_map
+    contact, fast = scenario.contact, scenario.solver.method == "fast"
+    over_place, stress = contact.snow_map, contact.snow.failure_shear_stress or 0.0
+    hardness, friction_share = (over_place.hardness, over_place.friction_share) if over_place else (None, None)
     carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
     return SnowField(
-        snow_hardness=contact.snow.snow_hardness
-        if over_place is None
-        else over_place.hardness or contact.snow.snow_hardness,
-        failure_shear_stress=0.0 if carries_side_force else contact.snow.failure_shear_stress or 0.0,
+        snow_hardness=hardness or contact.snow.snow_hardness,
+        failure_shear_stress=0.0 if carries_side_force else stress,
         unloading_ratio=contact.unloading_ratio,
         friction=laws.friction or contact.glide_friction,
         friction_acts_on=contact.friction_acts_on,
         friction_direction=contact.friction_direction,
-        shear=laws.shear
-        or (None if carries_side_force else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
+        shear=laws.shear or (None if carries_side_force else scenario.shear.of(stress)),
         strength_share=_strength_share(over_place),
-        friction_share=1.0 if over_place is None else over_place.friction_share or 1.0,
+        friction_share=friction_share or 1.0,
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
         shear_bearing=scenario.shear.bearing,
@@ -365,8 +346,8 @@ def _snow_field(scenario: Scenario, laws: Laws) -> SnowField:
         surface=surface_of(scenario.slope),
         compaction_resistance=contact.compaction_resistance,
         shear_displacement=contact.shear_displacement,
-        knot_area=scenario.solver.groove_tolerance * (FAST_GROOVE if scenario.solver.method == "fast" else 1.0),
-        part_along=FAST_PART if scenario.solver.method == "fast" else PART_ALONG,
+        knot_area=scenario.solver.groove_tolerance * (FAST_GROOVE if fast else 1.0),
+        part_along=FAST_PART if fast else PART_ALONG,
     )
 
 
@@ -376,14 +357,6 @@ def _strength_share(snow_map: SnowMap | None) -> float | Grid:
         return 1.0
     grid = snow_map.failure_shear_stress
     return Grid(grid.x, grid.y, grid.values / snow_map.mean_stress)
-
-
-def _gravity_vector(scenario: Scenario) -> FloatArray:
-    """Gravity (m/s²) in the scenario's axes, which are inclined on a plane slope."""
-    slope, g = scenario.slope, scenario.gravity
-    if isinstance(slope, Plane):
-        return np.array([g * math.sin(slope.angle), 0.0, -g * math.cos(slope.angle)])
-    return np.array([0.0, 0.0, -g])
 
 
 def _start(scenario: Scenario, depth: float) -> tuple[FloatArray, FloatArray]:

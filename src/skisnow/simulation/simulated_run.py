@@ -159,7 +159,11 @@ def simulate(
         other, other_setup = _run_once(closer, progress, laws=laws, boots=boots, strength_along=strength_along)
         if other.outcome not in ("energy_open", *_COMPUTED_WRONG):
             run, setup = replace(other, scenario=scenario), other_setup
-            _warn_of_closer_lines(spacing, run.numbers["line_spacing_m"])
+            warning = ModelLimitWarning(
+                "with lines of snow {spacing:.3g} mm apart the energy balance stayed open. The run was repeated with "
+                "lines {closer:.3g} mm apart. Set solver.line_spacing_mm to {closer:.3g} or less"
+            ).tag("repeated_with_closer_lines", spacing=spacing / MM, closer=run.numbers["line_spacing_m"] / MM)
+            warnings.warn(warning, stacklevel=2)
     _warn_of_friction(run)
     _warn_of_unseen_tracks(setup)
     return replace(run, laws=laws, strength_along=strength_along)
@@ -187,15 +191,6 @@ def _run_once(
     except KeyboardInterrupt:
         outcome = "interrupted"
     return computed_run(setup, record, outcome, time.perf_counter() - begin), setup
-
-
-def _warn_of_closer_lines(spacing: float, closer: float) -> None:
-    """Warn that the run was repeated because its lines of snow were too far apart."""
-    warning = ModelLimitWarning(
-        "with lines of snow {spacing:.3g} mm apart the energy balance stayed open. The run was repeated with lines "
-        "{closer:.3g} mm apart. Set solver.line_spacing_mm to {closer:.3g} or less"
-    ).tag("repeated_with_closer_lines", spacing=spacing / MM, closer=closer / MM)
-    warnings.warn(warning, stacklevel=3)
 
 
 def _warn_of_unseen_tracks(setup: Setup) -> None:
@@ -244,8 +239,8 @@ class _Watch:
     def look(self) -> bool:
         """Check the present moment; True where the run is over."""
         setup = self.setup
-        self._flying = 0.0 if setup.touches else self._flying + setup.time - self._last
-        self._last = setup.time
+        self._flying = 0.0 if setup.dynamics.touches else self._flying + setup.dynamics.time - self._last
+        self._last = setup.dynamics.time
         self.outcome = _current_outcome(setup, self._flying)
         if self.outcome is None:
             self._end_behind_last_gate()
@@ -264,7 +259,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
     length = math.inf if stop.length is None else stop.length
     number, nearing, watch = 0, False, _Watch(setup)
     while watch.outcome is None:
-        time = setup.time
+        time = setup.dynamics.time
         if duration - time <= SAME_TIME:
             return "finished"
         left = length - record.run_length
@@ -275,12 +270,12 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
         if nearing:
             moment = time + max(left / setup.speed, 2.0 * SAME_TIME)
         ended = record.advance(moment, replace=was_near, is_over=watch.look)
-        number = math.floor((setup.time + 2.0 * SAME_TIME) / interval)  # a time just below an output has reached it
+        number = math.floor((setup.dynamics.time + 2.0 * SAME_TIME) / interval)  # just below an output: it is reached
         if record.gains_energy:
             record.drop()
             return "not_finite"
         if progress is not None and number % OUTPUTS_AT_ONCE == 0:
-            progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
+            progress(setup.dynamics.time, min(1.0, max(setup.dynamics.time / duration, record.run_length / length)))
         if ended is not None:
             return ended
         if not setup.drives:
@@ -291,9 +286,9 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
 def _current_outcome(setup: Setup, flying: float) -> Outcome | None:
     """Outcome that ends the run now, such as a fall or a flight of `flying` seconds; None: it goes on."""
     (leaning, pitching), skier = setup.tilt, setup.scenario.skier
-    if skier is not None and leaning > TIPPED and setup.touches:
+    if skier is not None and leaning > TIPPED and setup.dynamics.touches:
         return "fell"
-    if skier is None and (leaning > TIPPED or (pitching > PITCHED and setup.drive is None and setup.touches)):
+    if skier is None and (leaning > TIPPED or (pitching > PITCHED and setup.drive is None and setup.dynamics.touches)):
         return "tipped_over"
     if flying >= LONGEST_FLIGHT and (skier is None or setup.height > skier.highest_flight):
         return "airborne"

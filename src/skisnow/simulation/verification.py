@@ -128,23 +128,25 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     ----------
     The page docs/validation/simulated-turn.md.
     """
-    again = simulate or _repeat_with_laws(run)
-    finer = refine(run, again)
-    return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_slightly_changed_runs(run, again))
+    if simulate is None:
+        from .simulated_run import simulate as repeat  # which loads the compiled core
+
+        simulate = partial(repeat, laws=run.laws, strength_along=run.strength_along)
+    finer = refine(run, simulate)
+    return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_slightly_changed_runs(run, simulate))
 
 
 def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
     """Repetitions of a run with a finer solver, one setting at a time; a part of `verify`."""
     refinements: list[Refinement] = []
+    numbers = run.numbers
+    used = replace(run.scenario.solver, elements=round(numbers["elements"]), line_spacing=numbers["line_spacing_m"])
     for key, solver in refined_solvers(run).items():
         finer = simulate(replace(run.scenario, solver=solver))
         if finer.outcome == "interrupted":
             break
-        refinements.append(
-            Refinement(
-                key, _used_setting(run, key), _solver_number(solver, key), _distance_of_ends(run, finer), finer.outcome
-            )
-        )
+        was, now = _solver_number(used, key), _solver_number(solver, key)
+        refinements.append(Refinement(key, was, now, _distance_of_ends(run, finer), finer.outcome))
     return tuple(refinements)
 
 
@@ -177,13 +179,6 @@ def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...
     )
 
 
-def _repeat_with_laws(run: Run) -> Simulate:
-    """Function that simulates a scenario with the laws of a run."""
-    from .simulated_run import simulate  # which loads the compiled core
-
-    return partial(simulate, laws=run.laws, strength_along=run.strength_along)
-
-
 def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str, Any]]:
     """The entry ``verification`` of summary.json: under each key the refinement and the shift of the end."""
     return {
@@ -195,13 +190,6 @@ def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str
         }
         for refinement in refinements
     }
-
-
-def _used_setting(run: Run, key: str) -> float:
-    """Setting of the solver that a run used, in its key's unit."""
-    numbers = run.numbers
-    chosen = replace(run.scenario.solver, elements=round(numbers["elements"]), line_spacing=numbers["line_spacing_m"])
-    return _solver_number(chosen, key)
 
 
 def _scenario_number(scenario: Scenario, key: str) -> float:

@@ -48,18 +48,14 @@ class ArcOutline:
         front, rear = self.layout.widest_points
         share = (np.clip(station, rear, front) - self.layout.middle) / self.layout.sidecut_length
         taper = self.tip_width - self.tail_width
-        side = self.waist_width + taper * share + 2.0 * self._sidecut_width * share**2
+        sidecut = self.tip_width + self.tail_width - 2.0 * self.waist_width
+        side = self.waist_width + taper * share + 2.0 * sidecut * share**2
         overhang = self.layout.tip - front
         if overhang <= 0:
             return side
         beyond = np.clip((station - front) / overhang, 0.0, 1.0)
         end = TIP_END_SHARE if self.end_width is None else self.end_width / self.tip_width
         return np.asarray(side * np.sqrt(1.0 - (1.0 - end**2) * beyond**2))
-
-    @property
-    def _sidecut_width(self) -> float:
-        """Tip width plus tail width less twice the waist width (m)."""
-        return self.tip_width + self.tail_width - 2.0 * self.waist_width
 
 
 FEWEST_ROWS: Final = 3
@@ -84,20 +80,8 @@ def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
     return lambda station: parabola(station) + rest.at(station)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Parabola:
-    """Widths a + b s + c s² over the sidecut length; beyond its ends those of the ends."""
-
-    coefficients: FloatArray
-    front: float
-    rear: float
-
-    def __call__(self, station: FloatArray) -> FloatArray:
-        return np.asarray(np.polynomial.polynomial.polyval(np.clip(station, self.rear, self.front), self.coefficients))
-
-
-def _fit_parabola(table: StationTable, layout: Layout) -> _Parabola:
-    """Parabola fitted to the widths within the sidecut length; rejects too few rows, or over less than half of it."""
+def _fit_parabola(table: StationTable, layout: Layout) -> StationFunction:
+    """Parabola of the widths within the sidecut length, constant beyond; rejects too few rows or a short span."""
     front, rear = layout.widest_points
     inside = (table.station <= front + _AT_THE_END) & (table.station >= rear - _AT_THE_END)
     station = table.station[inside]
@@ -109,8 +93,8 @@ def _fit_parabola(table: StationTable, layout: Layout) -> _Parabola:
             "ends and at the waist, and better every 10 cm"
         ).tag("table_too_short", size=station.size, span=span * 1e3, front=front, rear=rear, fewest_rows=FEWEST_ROWS)
     within = np.clip(station, rear, front)
-    coefficients = np.asarray(np.polynomial.polynomial.polyfit(within, table.value[inside], 2), dtype=np.float64)
-    return _Parabola(coefficients, front, rear)
+    coefficients = np.polynomial.polynomial.polyfit(within, table.value[inside], 2)
+    return lambda at: np.asarray(np.polynomial.polynomial.polyval(np.clip(at, rear, front), coefficients))
 
 
 _SAME_PLACE = 1e-9  # m
@@ -141,10 +125,12 @@ def assembled_ski(
         tables with the same number of rows, which differ smoothly; None: own stations.
     others: name, source, edges and keys, as in `Ski`.
     """
-    if like is None:
-        station = _make_grid(layout, np.empty(0) if stations is None else stations)
-    else:
+    if like is not None:
         station = like.station if stations is not None else moved_stations(like.station, like.layout, layout)
+    elif stations is not None and np.max(-np.diff(stations)) <= GREATEST_SPACING + _SAME_PLACE:
+        station = stations
+    else:
+        station = _dense_grid(layout, () if stations is None else tuple(stations.tolist()))
     widths = width(station)
     base_height = base(station) if callable(base) else base.height_at(station, layout)
     if mass_per_length is None:
@@ -165,13 +151,6 @@ def assembled_ski(
         base=base if isinstance(base, BaseShape) else None,
         **others,
     )
-
-
-def _make_grid(layout: Layout, stations: FloatArray) -> FloatArray:
-    """The table's stations (m) if they are dense enough, otherwise denser ones that include them."""
-    if stations.size and np.max(-np.diff(stations)) <= GREATEST_SPACING + _SAME_PLACE:
-        return stations
-    return _dense_grid(layout, tuple(stations.tolist()))
 
 
 @functools.lru_cache(maxsize=16)

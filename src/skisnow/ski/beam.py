@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import itertools
 from dataclasses import dataclass, fields, replace
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -255,8 +255,9 @@ def clamped(
     if footprint_stiffness is not None:
         require_range("footprint_stiffness", footprint_stiffness, 0.0, above=True)
     zones = _end_zones(ski, clamp_length) if finer_ends else ()
-    mesh = _make_mesh(front, rear, clamp_length, elements, bedded=footprint_stiffness is not None, zones=zones)
-    node, dof, size = mesh.node, mesh.dof, mesh.size
+    node, dof, size, stations = _make_mesh(
+        front, rear, clamp_length, elements, bedded=footprint_stiffness is not None, zones=zones
+    )
     length = node[:-1] - node[1:]
     stiffness = stiffness_matrices(
         length, *ski.tables_at(element_places(node, GAUSS_POINTS), "bending_stiffness", "torsional_stiffness")
@@ -266,26 +267,24 @@ def clamped(
         (width,) = ski.tables_at(element_places(node, GAUSS_POINTS), "width")
         stiffness = stiffness + mass_matrices(length, under + 0.0 * width, under * width**2 / 12.0)
     width, base_height = ski.tables_at(element_places(node, STATION_POINTS), "width", "base_height")
-    stations = replace(mesh.stations, width=width.ravel(), base_height=base_height.ravel())
+    stations = replace(stations, width=width.ravel(), base_height=base_height.ravel())
     return ClampedSki(ski, clamp_length, node, dof, size, assembled(stiffness, dof, size), stations)
-
-
-class _Mesh(NamedTuple):
-    """Mesh of all skis of the same lengths; its stations have no width and no base height yet."""
-
-    node: FloatArray
-    dof: IntArray
-    size: int
-    stations: Stations
 
 
 @functools.lru_cache(maxsize=16)
 def _make_mesh(
     front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool, zones: tuple[_Zone, ...]
-) -> _Mesh:
-    """Mesh of a beam from `front` to `rear` (m) with stations and shape functions; without a clamp if `bedded`."""
+) -> tuple[FloatArray, IntArray, int, Stations]:
+    """Nodes, `dof`, `size` and stations of all skis from `front` to `rear` (m); without a clamp if `bedded`.
+
+    The stations have no width and no base height yet.
+    """
     node = _place_nodes(front, rear, clamp_length, elements, bedded=bedded, zones=zones)
-    dof, size = _number_dofs(node, 0.0 if bedded else clamp_length)
+    free = np.abs(node) > (0.0 if bedded else clamp_length) / 2.0 + 1e-12
+    number = np.where(free, DOFS_PER_NODE * (np.cumsum(free) - 1), -DOFS_PER_NODE)
+    of_node = number[:, None] + np.arange(DOFS_PER_NODE)
+    of_node[~free] = -1
+    dof, size = np.hstack([of_node[:-1], of_node[1:]]).astype(np.int64), int(DOFS_PER_NODE * free.sum())
     length = node[:-1] - node[1:]
 
     def flat(values: FloatArray) -> FloatArray:
@@ -304,7 +303,7 @@ def _make_mesh(
     )
     for array in (node, dof, *(getattr(stations, field.name) for field in fields(Stations))):
         array.flags.writeable = False
-    return _Mesh(node, dof, size, stations)
+    return node, dof, size, stations
 
 
 def element_places(node: FloatArray, local: FloatArray) -> FloatArray:
@@ -366,12 +365,3 @@ def _end_zones(ski: Ski, clamp_length: float) -> tuple[_Zone, ...]:
     ahead, behind = front - inner, rear + inner
     ahead, behind = half if ahead - half < SHORT else ahead, -half if -half - behind < SHORT else behind
     return (float(front), float(ahead)), (float(behind), float(rear))
-
-
-def _number_dofs(node: FloatArray, clamp_length: float) -> tuple[IntArray, int]:
-    """Degrees of freedom of each element (-1: held by the clamp), and the number of free ones."""
-    free = np.abs(node) > clamp_length / 2.0 + 1e-12
-    number = np.where(free, DOFS_PER_NODE * (np.cumsum(free) - 1), -DOFS_PER_NODE)
-    dof = number[:, None] + np.arange(DOFS_PER_NODE)
-    dof[~free] = -1
-    return np.hstack([dof[:-1], dof[1:]]).astype(np.int64), int(DOFS_PER_NODE * free.sum())

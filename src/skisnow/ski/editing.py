@@ -91,23 +91,23 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
     >>> round(float(stiffer.bending_stiffness.max() / slalom.bending_stiffness.max()), 9)
     1.2
     """
-    _require_edit(edit)
-    changed = {attribute: _edited_curve(ski, edit, column) for column, attribute in EDITED_COLUMNS.items()}
+    for column, factor in edit.factors.items():
+        if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
+            raise ParameterError(
+                "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it"
+            ).tag("out_of_range", column=column, factor=factor, lowest=1.0 / _LARGEST_FACTOR, highest=_LARGEST_FACTOR)
+    for column, values in edit.values.items():
+        for station, value in zip(edit.station, values, strict=True):
+            if not np.isnan(value):  # NaN: no change
+                replace(COLUMNS[column], name=f"station {station:.3f} m: {column}").require(value)
+    changed: dict[str, Any] = {
+        attribute: _edited_curve(ski, edit, column) for column, attribute in EDITED_COLUMNS.items()
+    }
     height = changed["base_height"]
     changed["base_height"] = height - np.interp(0.0, ski.station[::-1], height[::-1])  # it counts from the boot
     mass = ski.mass_per_length * edit.factors.get(MASS, 1.0)
-    return replace(
-        ski,
-        name=name,
-        source=source,
-        keys=None,
-        mass_per_length=mass,
-        width=changed["width"],
-        base_height=changed["base_height"],
-        base=ski.base if np.array_equal(changed["base_height"], ski.base_height) else None,
-        bending_stiffness=changed["bending_stiffness"],
-        torsional_stiffness=changed["torsional_stiffness"],
-    )
+    base = ski.base if np.array_equal(changed["base_height"], ski.base_height) else None
+    return replace(ski, name=name, source=source, keys=None, mass_per_length=mass, base=base, **changed)
 
 
 def values_at(ski: Ski, station: FloatArray) -> dict[str, FloatArray]:
@@ -139,19 +139,6 @@ def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
     width = np.where(ski.station > front, at_front, np.where(ski.station < rear, at_rear, ski.width))
     waist = width.min()
     return np.asarray((waist + factor * (width - waist)) / width)
-
-
-def _require_edit(edit: SkiEdit) -> None:
-    """Reject factors and values of an edit that are out of range; NaN stands for no change."""
-    for column, factor in edit.factors.items():
-        if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
-            raise ParameterError(
-                "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it"
-            ).tag("out_of_range", column=column, factor=factor, lowest=1.0 / _LARGEST_FACTOR, highest=_LARGEST_FACTOR)
-    for column, values in edit.values.items():
-        for station, value in zip(edit.station, values, strict=True):
-            if not np.isnan(value):
-                replace(COLUMNS[column], name=f"station {station:.3f} m: {column}").require(value)
 
 
 FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS))

@@ -14,6 +14,11 @@ RIGID: Final = 1e6
 under 500 N."""
 
 
+def _width(of: str, meaning: str) -> Quantity:
+    """Quantity of the width of tip, waist or tail, with its range (mm)."""
+    return Quantity(f"{of}_width_mm", meaning, lowest=15, highest=500, usual=(40, 350), origin="needed, or a column")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SkiFile:
     """A ski file in SI; None for missing keys without a default. Lists go from tip to tail."""
@@ -35,21 +40,9 @@ class SkiFile:
         Quantity("sidecut_length_mm", "between the widest points in front and behind"),
         Allowed(20, 3000, usual=(180, 2300), origin="needed"),
     ] = None
-    tip_width: Annotated[
-        float | None,
-        Quantity("tip_width_mm", "width at the front end of the sidecut length"),
-        Allowed(15, 500, usual=(40, 350), origin="needed, or a column"),
-    ] = None
-    waist_width: Annotated[
-        float | None,
-        Quantity("waist_width_mm", "width at its middle, not above the other two"),
-        Allowed(15, 500, usual=(40, 350), origin="needed, or a column"),
-    ] = None
-    tail_width: Annotated[
-        float | None,
-        Quantity("tail_width_mm", "width at its rear end"),
-        Allowed(15, 500, usual=(40, 350), origin="needed, or a column"),
-    ] = None
+    tip_width: Annotated[float | None, _width("tip", "width at the front end of the sidecut length")] = None
+    waist_width: Annotated[float | None, _width("waist", "width at its middle, not above the other two")] = None
+    tail_width: Annotated[float | None, _width("tail", "width at its rear end")] = None
     tip_end_width: Annotated[
         float | None,
         Quantity("tip_end_width_mm", "width at the very tip, not above the tip width"),

@@ -12,7 +12,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import ShownFields
-from ..parameters import Allowed, Quantity, require_declared
+from ..parameters import Allowed, Declared, Quantity
 
 LONGEST: Final = 6.0
 """Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""
@@ -149,8 +149,20 @@ TAIL_HEIGHT: Final = 0.008
 """Height of the tail over the contact points (m). Modelling assumption: 8 mm, a usual square tail."""
 
 
+def _rocker_length(of: str, end: str) -> Quantity:
+    """Quantity of the length of a rocker, of the tip or the tail, with its range (mm)."""
+    meaning = f"by how much the {end} contact point is drawn in"
+    return Quantity(f"{of}_rocker_length_mm", meaning, lowest=0, highest=1500, usual=(20, 800), origin="0")
+
+
+def _rocker_height(of: str, end: str) -> Quantity:
+    """Quantity of the height of a rocker, of the tip or the tail, with its range (mm)."""
+    meaning = f"height of the base at the {end} end of the running length"
+    return Quantity(f"{of}_rocker_height_mm", meaning, lowest=0, highest=200, usual=(0.5, 100), origin="0")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BaseShape:
+class BaseShape(Declared):
     """Heights and lengths of the unloaded base (m); heights are over the line through the contact points.
 
     Modelling assumptions:
@@ -186,29 +198,10 @@ class BaseShape:
         Quantity("tail_height_mm", "height of the tail over that line"),
         Allowed(0, 300, usual=(1, 150), origin="8 (modelling assumption)"),
     ] = None
-    tip_rocker_length: Annotated[
-        float,
-        Quantity("tip_rocker_length_mm", "by how much the front contact point is drawn in"),
-        Allowed(0, 1500, usual=(20, 800), origin="0"),
-    ] = 0.0
-    tip_rocker_height: Annotated[
-        float,
-        Quantity("tip_rocker_height_mm", "height of the base at the front end of the running length"),
-        Allowed(0, 200, usual=(0.5, 100), origin="0"),
-    ] = 0.0
-    tail_rocker_length: Annotated[
-        float,
-        Quantity("tail_rocker_length_mm", "by how much the rear contact point is drawn in"),
-        Allowed(0, 1500, usual=(20, 800), origin="0"),
-    ] = 0.0
-    tail_rocker_height: Annotated[
-        float,
-        Quantity("tail_rocker_height_mm", "height of the base at the rear end of the running length"),
-        Allowed(0, 200, usual=(0.5, 100), origin="0"),
-    ] = 0.0
-
-    def __post_init__(self) -> None:
-        require_declared(self)
+    tip_rocker_length: Annotated[float, _rocker_length("tip", "front")] = 0.0
+    tip_rocker_height: Annotated[float, _rocker_height("tip", "front")] = 0.0
+    tail_rocker_length: Annotated[float, _rocker_length("tail", "rear")] = 0.0
+    tail_rocker_height: Annotated[float, _rocker_height("tail", "rear")] = 0.0
 
     def height_at(self, station: FloatArray, layout: Layout) -> FloatArray:
         """Height (m) of the base at stations (m), 0 at the boot.

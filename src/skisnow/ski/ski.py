@@ -391,15 +391,11 @@ def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> flo
     """
     x, y = along - along.mean(), across - across.mean()
     scale = float(np.max(np.abs(x)))
-    curvature = _pratt_curvature(x / scale, y / scale) / scale
-    return 1.0 / curvature if curvature * scale**2 / 2.0 > STRAIGHT else float("inf")
-
-
-def _pratt_curvature(x: FloatArray, y: FloatArray) -> float:
-    """Curvature (1/m) of the circle fitted to points by Pratt's method."""
-    points = np.column_stack([x**2 + y**2, x, y, np.ones_like(x)])
+    u, v = x / scale, y / scale
+    points = np.column_stack([u**2 + v**2, u, v, np.ones_like(u)])
     constraint = np.array([[0.0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
-    residuals, circles = np.linalg.eig(np.linalg.solve(constraint, points.T @ points / len(x)))
+    residuals, circles = np.linalg.eig(np.linalg.solve(constraint, points.T @ points / len(u)))
     # the constraint has one negative direction, whose circle is imaginary: the answer is the one nearest to 0
     A, B, C, D = np.real(circles[:, np.argmin(np.abs(residuals))])
-    return float(2.0 * abs(A) / np.sqrt(B**2 + C**2 - 4.0 * A * D))
+    curvature = float(2.0 * abs(A) / np.sqrt(B**2 + C**2 - 4.0 * A * D)) / scale
+    return 1.0 / curvature if curvature * scale**2 / 2.0 > STRAIGHT else float("inf")

@@ -170,7 +170,12 @@ def write_ski(ski: Ski, path: str | Path) -> None:
             "cannot_write", path=path
         )
     table = path.with_suffix(".csv")
-    write_file(table, _table_text(ski))
+    tables = {name: getattr(ski, column.field) for name, column in COLUMNS.items()}
+    if _is_rigid(ski):
+        del tables["EI_N_m2"], tables["GJ_N_m2"]
+    columns = [values / COLUMNS[name].factor for name, values in tables.items()]
+    rows = (",".join(f"{_plain(value):.15g}" for value in row) for row in zip(*columns, strict=True))
+    write_file(table, "\n".join([",".join(tables), *rows, ""]))
     write_file(path, _keys_text(ski, table.name))
 
 
@@ -192,16 +197,6 @@ def _keys_text(ski: Ski, table: str) -> str:
         del values["source"]
     rigid = "rigid = true\n" if _is_rigid(ski) else ""
     return "".join(f"{key} = {toml_text(value)}\n" for key, value in values.items()) + rigid
-
-
-def _table_text(ski: Ski) -> str:
-    """CSV text with a ski's columns; without the stiffnesses of a rigid ski."""
-    tables = {name: getattr(ski, column.field) for name, column in COLUMNS.items()}
-    if _is_rigid(ski):
-        del tables["EI_N_m2"], tables["GJ_N_m2"]
-    columns = [table / COLUMNS[name].factor for name, table in tables.items()]
-    rows = (",".join(f"{_plain(value):.15g}" for value in row) for row in zip(*columns, strict=True))
-    return "\n".join([",".join(tables), *rows, ""])
 
 
 def _is_rigid(ski: Ski) -> bool:

@@ -59,7 +59,13 @@ def read_table(path: Path) -> dict[str, StationTable]:
     columns = dict(zip(header, np.array(rows).T, strict=True))
     numbers = [line for line, _ in lines[1:]]
     station = columns["station_m"]  # in m, as it is
-    _require_falling(path, station, numbers)
+    rising = np.flatnonzero(np.diff(station) >= 0)
+    if rising.size:
+        before, value = station[rising[0] : rising[0] + 2]
+        raise ParameterError(
+            "{path}: line {line}, station_m is {value}; allowed is less than the {before:g} before it. List the rows "
+            "from tip to tail, positive in front of the boot."
+        ).tag("out_of_range", path=path, line=numbers[rising[0] + 1], value=shown_value(float(value)), before=before)
     for name, column in columns.items():
         places = {f"line {line}, {name}": float(value) for line, value in zip(numbers, column, strict=True)}
         warn_of_unusual(path, places, COLUMNS[name])
@@ -93,35 +99,21 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
 
 
 def _parse_row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
-    """Numbers of a row, with the decimal mark `mark`; rejects a wrong number of cells."""
+    """Numbers of a row, with the decimal mark `mark`; rejects a wrong number of cells, text and wrong numbers."""
     if len(cells) != len(header):
         raise ParameterError("{path}, line {line}: {n_cells} cells for {n_header} columns. Correct it.").tag(
             "wrong_number_of_cells", path=path, line=line, n_cells=len(cells), n_header=len(header)
         )
-    return [_parse_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
-
-
-def _parse_cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
-    """Number of a cell in its column's unit of SI; rejects text and numbers out of range."""
-    column = replace(COLUMNS[name], name=f"line {line}, {name}")
-    try:
-        value: object = float(cell if mark == "." else with_decimal_point(cell))
-    except ValueError:
-        value = cell
-    number = checked(path, value, column)
-    assert isinstance(number, float)
-    return number
-
-
-def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:
-    """Reject stations that do not fall from row to row; the error names the first such line."""
-    rising = np.flatnonzero(np.diff(station) >= 0)
-    if rising.size:
-        before, value = station[rising[0] : rising[0] + 2]
-        raise ParameterError(
-            "{path}: line {line}, station_m is {value}; allowed is less than the {before:g} before it. List the rows "
-            "from tip to tail, positive in front of the boot."
-        ).tag("out_of_range", path=path, line=lines[rising[0] + 1], value=shown_value(float(value)), before=before)
+    numbers = []
+    for name, cell in zip(header, cells, strict=True):
+        try:
+            value: object = float(cell if mark == "." else with_decimal_point(cell))
+        except ValueError:
+            value = cell
+        number = checked(path, value, replace(COLUMNS[name], name=f"line {line}, {name}"))
+        assert isinstance(number, float)
+        numbers.append(number)
+    return numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -208,15 +200,12 @@ def _slopes(x: FloatArray, y: FloatArray) -> FloatArray:
     means = (near + far) / (near / np.where(same, before, 1.0) + far / np.where(same, after, 1.0))
     out = np.zeros(y.shape)
     out[..., 1:-1] = np.where(same, means, 0.0)
-    out[..., [0, -1]] = _end_slopes(width[[0, -1]], width[[1, -2]], rise[..., [0, -1]], rise[..., [1, -2]])
+    # parabolas through the outer three points, limited so that they do not overshoot
+    first, second, outer, inner = width[[0, -1]], width[[1, -2]], rise[..., [0, -1]], rise[..., [1, -2]]
+    slope = ((2.0 * first + second) * outer - first * inner) / (first + second)
+    overshoots = (outer * inner <= 0.0) & (np.abs(slope) > 3.0 * np.abs(outer))
+    out[..., [0, -1]] = np.where(slope * outer <= 0.0, 0.0, np.where(overshoots, 3.0 * outer, slope))
     return out
-
-
-def _end_slopes(width: FloatArray, next_width: FloatArray, rise: FloatArray, next_rise: FloatArray) -> FloatArray:
-    """Slopes of the parabolas through the outer three points, limited so that they do not overshoot."""
-    slope = ((2.0 * width + next_width) * rise - width * next_rise) / (width + next_width)
-    overshoots = (rise * next_rise <= 0.0) & (np.abs(slope) > 3.0 * np.abs(rise))
-    return np.where(slope * rise <= 0.0, 0.0, np.where(overshoots, 3.0 * rise, slope))
 
 
 def _slope_growths(x: FloatArray, y: FloatArray) -> FloatArray:

@@ -57,8 +57,11 @@ class Condensed:
         A = A if projection is None else A @ projection
         _require_few(A.shape[1])
         unit = _lengths(A)
-        best = _solve(A / unit, z, self.n)
-        return Solved(best.coefficients / unit, best.rank)
+        A = A / unit
+        best, _, rank, _ = np.linalg.lstsq(A, z, rcond=max(self.n, A.shape[1]) * np.finfo(float).eps)  # the shortest
+        if rank < A.shape[1] or not (best > 0.0).all():
+            best = nnls(A, z)[0]
+        return Solved(np.asarray(best, dtype=float) / unit, int(rank))
 
 
 def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None) -> Condensed:
@@ -77,8 +80,12 @@ def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.Ar
     y = as_response(response)
     A = as_predictors(design, len(y))
     if weights is not None:
-        root = _root_weights(weights, len(y))
-        A, y = A * root[:, None], y * root
+        w = np.asarray(weights, dtype=float)
+        if w.shape != y.shape or not np.all(np.isfinite(w)) or np.any(w < 0):
+            raise ParameterError(
+                "weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response"
+            ).tag("wrong_shape", shape=str(w.shape), n=len(y))
+        A, y = A * np.sqrt(w)[:, None], y * np.sqrt(w)
     unit = _lengths(A)
     few = np.asarray(np.linalg.qr(np.column_stack((A / unit, y)), mode="r"), dtype=float)
     return Condensed(few[:, :-1], few[:, -1], unit, len(y))
@@ -94,30 +101,6 @@ def _require_few(p: int) -> None:
     """Reject a number of coefficients that is not from 1 to the maximum."""
     if not 1 <= p <= MOST_COEFFICIENTS:
         raise ParameterError("{p} coefficients; 1 to {most} are allowed").tag("too_many", p=p, most=MOST_COEFFICIENTS)
-
-
-def _root_weights(weights: npt.ArrayLike, n: int) -> FloatArray:
-    """Square roots (n,) of the weights, after a check that they are finite and at least 0."""
-    w = np.asarray(weights, dtype=float)
-    if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
-        raise ParameterError("weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response").tag(
-            "wrong_shape", shape=str(w.shape), n=n
-        )
-    return np.sqrt(w)
-
-
-def _solve(A: FloatArray, z: FloatArray, n: int) -> Solved:
-    """Minimise ‖A x - z‖ over x ≥ 0 for a small A with columns of length one or zero, condensed from n rows."""
-    free, rank = _least_squares(A, z, n)
-    if rank == A.shape[1] and (free > 0.0).all():
-        return Solved(free, rank)
-    return Solved(np.asarray(nnls(A, z)[0], dtype=float), rank)
-
-
-def _least_squares(A: FloatArray, z: FloatArray, n: int) -> tuple[FloatArray, int]:
-    """The shortest least-squares solution, and the numerical rank."""
-    solution, _, rank, _ = np.linalg.lstsq(A, z, rcond=max(n, A.shape[1]) * np.finfo(float).eps)
-    return np.asarray(solution, dtype=float), int(rank)
 
 
 def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:

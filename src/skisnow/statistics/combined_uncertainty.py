@@ -73,17 +73,12 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
     >>> expanded_factor([1.0, 30.0, float("inf")], 0.95).round(4).tolist()
     [12.7062, 2.0423, 1.96]
     """
-    require_confidence(confidence)
+    require_range("confidence", confidence, 0.0, 1.0, above=True, below=True)
     nu = np.asarray(degrees_of_freedom, float)
     quantile = 0.5 * (1.0 + confidence)
     finite = np.isfinite(nu) & (nu > 0)
     k = np.where(finite, stdtrit(np.where(finite, nu, 1.0), quantile), np.nan)
     return np.where(np.isposinf(nu), ndtri(quantile), k)
-
-
-def require_confidence(confidence: float) -> None:
-    """Raise `ParameterError` unless the confidence is between 0 and 1."""
-    require_range("confidence", confidence, 0.0, 1.0, above=True, below=True)
 
 
 class RandomEffectsMean(NamedTuple):
@@ -186,7 +181,7 @@ def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> 
     >>> percentile_interval(np.arange(101.0), confidence=0.9).round(9).tolist()
     [5.0, 95.0]
     """
-    require_confidence(confidence)
+    require_range("confidence", confidence, 0.0, 1.0, above=True, below=True)
     values = np.asarray(samples, dtype=float)
     if values.ndim == 0:
         raise ParameterError("samples must have at least one axis, that of the resamples").tag("wrong_shape")

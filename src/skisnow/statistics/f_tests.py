@@ -63,18 +63,13 @@ def nested_f_test(
     if df1 == 0 or df2 <= 0:
         return NestedTest(float("nan"), df1, df2, float("nan"))
     F = f_ratio(max(sse_reduced - sse_full, 0.0), df1, sse_full, df2)
-    return NestedTest(F, df1, df2, f_tail(F, df1, df2))
+    return NestedTest(F, df1, df2, float(fdtrc(df1, df2, F)))
 
 
 def f_ratio(explained: float, df1: int, unexplained: float, df2: int) -> float:
     """Ratio of two mean squares; infinite where nothing is left unexplained, NaN for 0/0."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         return float(np.divide(explained / df1, unexplained / df2))
-
-
-def f_tail(F: float, df1: int, df2: int) -> float:
-    """Chance of a value above F in the F distribution; NaN in, NaN out."""
-    return float(fdtrc(df1, df2, F))
 
 
 _MOST_TESTS = 10**9

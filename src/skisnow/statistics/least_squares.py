@@ -50,7 +50,12 @@ def solve_least_squares(response: npt.ArrayLike, predictors: npt.ArrayLike) -> L
     Raises FitError: n < k + 1, or a predictor does not vary or follows from the others.
     """
     y = as_response(response)
-    scaled, back = _standardised(as_predictors(predictors, len(y)))
+    centred, means = _centre(as_predictors(predictors, len(y)))
+    length = np.sqrt(np.mean(centred**2, axis=0))
+    unit = np.where(length > 0, length, 1.0)
+    scaled = np.hstack((np.ones((len(y), 1)), centred / unit))
+    back = np.diag(np.concatenate(([1.0], 1.0 / unit)))  # to the coefficients of the predictors as given
+    back[0, 1:] = -means / unit
     _warn_if_ill_conditioned(scaled)
     n, p = scaled.shape
     if n < p:
@@ -61,7 +66,11 @@ def solve_least_squares(response: npt.ArrayLike, predictors: npt.ArrayLike) -> L
     diagonal = np.abs(np.diag(R))
     rank = int(np.sum(diagonal > n * _EPS * diagonal[0]))
     if rank < p:
-        raise FitError(_dependence_problem(p, order[rank:].tolist(), rank)).tag("rank_deficient")
+        dependent = sorted(order[rank:].tolist())
+        raise FitError(
+            "the data determine only {rank} of {count} coefficients: {names} does not vary or follows from the other "
+            "columns; remove it, or measure at more settings of it"
+        ).tag("rank_deficient", rank=rank, count=p, names=[f"predictor {j}" if j else "intercept" for j in dependent])
     inverse = np.empty((p, p))
     inverse[order] = solve_triangular(R, np.eye(p))
     shifted, middle = _centre(y)
@@ -116,17 +125,6 @@ def _centre(values: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.where(still, 0.0, shifted), middle
 
 
-def _standardised(predictors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Ones, and predictors (n, k) centred and divided by their root mean square; matrix back to their coefficients."""
-    n = len(predictors)
-    shifted, middle = _centre(predictors)
-    length = np.sqrt(np.mean(shifted**2, axis=0))
-    unit = np.where(length > 0, length, 1.0)
-    back = np.diag(np.concatenate(([1.0], 1.0 / unit)))
-    back[0, 1:] = -middle / unit
-    return np.hstack((np.ones((n, 1)), shifted / unit)), back
-
-
 def _warn_if_ill_conditioned(columns: FloatArray) -> None:
     """Warn where columns of unit length have a condition number κ above `CONDITION_LIMIT`.
 
@@ -145,14 +143,3 @@ def _warn_if_ill_conditioned(columns: FloatArray) -> None:
             digits=f"{-np.log10(_EPS * condition):.0f}",
         )
         warnings.warn(FitWarning(message).tag("ill_conditioned"), stacklevel=4)
-
-
-def _dependence_problem(count: int, dependent: list[int], rank: int) -> Message:
-    """Message that the data determine only `rank` of `count` coefficients; predictor 0 is the intercept."""
-    return Message(
-        "the data determine only {rank} of {count} coefficients: {names} does not vary or follows from the other "
-        "columns; remove it, or measure at more settings of it",
-        rank=rank,
-        count=count,
-        names=[f"predictor {j}" if j else "intercept" for j in sorted(dependent)],
-    )

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import fdtrc
 
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.units import CONFIDENCE, ShownFields
 from .combined_uncertainty import expanded_factor
-from .f_tests import f_ratio, f_tail
+from .f_tests import f_ratio
 from .least_squares import LeastSquares, solve_least_squares
 
 
@@ -120,7 +121,7 @@ def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[floa
     # the explained squares from the fitted values: total - sse would lose digits where little is explained
     explained = float(np.sum((fitted - fitted.mean()) ** 2))
     F = f_ratio(explained, p - 1, sse, n - p)
-    return r2, F, f_tail(F, p - 1, n - p)
+    return r2, F, float(fdtrc(p - 1, n - p, F))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

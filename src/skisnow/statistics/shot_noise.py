@@ -50,7 +50,10 @@ def shot_noise(force: FloatArray, sample_distance: float) -> ShotNoise:
     (0.75, 0.857143)
     """
     mean, variance = force.mean(axis=-1), force.var(axis=-1)
-    residual = _without_line(force)
+    # residuals of each window from its least-squares line
+    place = np.arange(force.shape[-1]) - 0.5 * (force.shape[-1] - 1)
+    level = force - mean[..., None]
+    residual = level - (level @ place / np.sum(place**2))[..., None] * place
     at_zero = np.sum(residual**2, axis=-1)
     next_to_it = np.sum(residual[..., 1:] * residual[..., :-1], axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -59,15 +62,6 @@ def shot_noise(force: FloatArray, sample_distance: float) -> ShotNoise:
         intensity = 4.0 / 3.0 * mean**2 / (variance * deflection)
     determined = (mean > 0.0) & np.isfinite(rupture_force) & np.isfinite(deflection) & np.isfinite(intensity)
     return ShotNoise(*(np.where(determined, parts, np.nan) for parts in (rupture_force, deflection, intensity)))
-
-
-def _without_line(force: FloatArray) -> FloatArray:
-    """Residuals of each window from its least-squares line."""
-    place = np.arange(force.shape[-1]) - 0.5 * (force.shape[-1] - 1)
-    level = force - force.mean(axis=-1, keepdims=True)
-    slope = level @ place / np.sum(place**2)
-    residual: FloatArray = level - slope[..., None] * place
-    return residual
 
 
 def windows_of(force: FloatArray, size: int, step: int) -> FloatArray:

@@ -147,7 +147,7 @@ def test_the_moment_that_gains_energy_is_not_kept(monkeypatch: pytest.MonkeyPatc
     """Energy out of nothing ends the run at the moment before, and its path is as long as it was there."""
 
     def gains(self: Record) -> bool:
-        return self.setup.time > 0.035
+        return self.setup.dynamics.time > 0.035
 
     plain = simulate(load_scenario("carved-46m", changes={"run.duration_s": 0.03}))
     monkeypatch.setattr(Record, "gains_energy", property(gains))
