@@ -296,13 +296,31 @@ def test_outputs_that_do_not_exist() -> None:
 def test_a_rigid_wedge_in_closed_form() -> None:
     """e = √(2 F tan ϑ/(H_V L)): half a per cent per per cent of the load, minus half of H_V; grip F tan ϑ/(S_f e L)."""
     case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
-    found = carve(rigid_ski(), snow(0.2), **case)
+    known = snow(0.2)
+    found = carve(rigid_ski(), known, **case)
     names = ["load_N", "snow.H_V_N_per_mm3", "unloading_ratio", "edge_angle_deg"]
     depth = [each.relative for each in found.sensitivity("edge_depth_mm", names)]
     grip = [each.relative for each in found.sensitivity("grip_utilisation", names)]
     steeper = math.radians(45.0) / (math.sin(math.radians(45.0)) * math.cos(math.radians(45.0)))
     assert depth == pytest.approx([0.5, -0.5, 0.0, steeper / 2.0], abs=1e-6)
     assert grip == pytest.approx([0.5, 0.5, 0.0, steeper / 2.0], abs=1e-6)
+    # intervals of H_V and S_f: a fifth and a tenth of each; grip grows as √H_V / S_f
+    H, S = known.snow_hardness, present(known.failure_shear_stress)
+    of_hardness = replace(known, snow_hardness_interval=(0.9 * H, 1.3 * H))
+    of_both = replace(of_hardness, failure_shear_stress_interval=(0.8 * S, 1.0 * S))
+    exact, value = derivatives(found), present(found.grip_utilisation)
+    assert exact.changes_by_snow("grip_utilisation", of_both) == pytest.approx([0.1 * value, -0.1 * value], rel=1e-5)
+    assert exact.half_interval("grip_utilisation", of_both) == pytest.approx(math.sqrt(0.02) * value, rel=1e-5)
+    assert exact.half_interval("grip_utilisation", of_hardness) == pytest.approx(0.1 * value, rel=1e-5)
+    assert exact.half_interval("grip_utilisation", known) is None
+
+
+def test_the_total_force_needs_all_its_parts() -> None:
+    found = carve(rigid_ski(), snow(0.2), edge_angle=math.radians(30.0), load=700.0, unloading_ratio=1.0)
+    assert found.total_force == pytest.approx(700.0 / math.cos(math.radians(30.0)), rel=1e-9)
+    assert replace(found, side_force=None).total_force is None
+    assert replace(found, forebody_load=None).total_force is None
+    assert replace(found, afterbody_load=None).total_force is None
 
 
 def test_fields_sum_to_the_derivative_by_a_factor_and_forces_grow_as_the_largest_does() -> None:

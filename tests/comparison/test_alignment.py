@@ -137,11 +137,13 @@ def test_the_next_turn_of_a_slalom_is_a_rival_where_both_have_the_whole_track_be
     assert round(apart) in (1, 2)
 
 
-def test_an_alignment_with_less_overlap_is_not_preferred() -> None:
-    """The next turn fits 55 % of the track about as well; the place with all of it beside counts, without a rival."""
+@pytest.mark.parametrize("scale", [1.0, 1000.0])
+def test_an_alignment_with_less_overlap_is_not_preferred(scale: float) -> None:
+    """The next turn fits 55 % of the track about as well; the place with all of it beside counts, at any scale."""
     simulated, measured = two_thirds_turned(0.9)
     noise = 0.06 * np.random.default_rng(4).normal(size=measured.place.shape)
-    motion = fit_motion(simulated, line_of(measured.place + noise), start=True, heading=True)
+    tracks = (line_of(scale * place) for place in (simulated.place, measured.place + noise))
+    motion = fit_motion(*tracks, start=True, heading=True)
     assert motion.turned == pytest.approx(0.9, abs=0.02)
     assert motion.share > 0.95
     assert motion.rival is None
@@ -180,6 +182,19 @@ def test_a_line_that_is_the_same_turned_by_half_a_turn_keeps_its_direction() -> 
     motion = fit_motion(line_of(wave), line_of(wave + noise), start=True, heading=True)
     assert motion.turned == pytest.approx(0.0, abs=0.01)
     assert motion.rival is None
+
+
+def test_a_track_is_not_laid_on_a_piece_that_runs_the_other_way() -> None:
+    """Out along a low wave, back along eight high ones: the latter fit exactly, at more places than are refined."""
+
+    def leg(first: float, last: float, height: float, side: float) -> FloatArray:
+        along = np.arange(first, last, math.copysign(0.1, last - first))
+        return np.column_stack([along, side + height * (np.sin(along / 3.0) + 0.4 * np.cos(along / 1.5))])
+
+    simulated = line_of(np.vstack([leg(0.0, 24.0, 0.3, 0.0), leg(24.0, -136.0, 1.0, 20.0)]))
+    motion = fit_motion(simulated, line_of(leg(3.0, 22.0, 1.0, 0.0)), start=True, heading=False)
+    assert motion.moved == pytest.approx([0.0, 0.0], abs=0.1)
+    assert motion.rms > 0.3
 
 
 def test_arcs_of_one_circle_have_a_rival() -> None:

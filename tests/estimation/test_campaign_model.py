@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import optimize
+from scipy import optimize, stats
 
 import skisnow
 from skisnow.campaign import ReferenceNoise, reference_campaign
@@ -15,7 +15,7 @@ from skisnow.estimation.errors_in_depth import volume_factor
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.parts import seating_change
 from skisnow.estimation.readings import Readings, ReadingUncertainty
-from skisnow.estimation.spread_groups import fit_in_groups, noisier_series_warning
+from skisnow.estimation.spread_groups import _two_classes, fit_in_groups, noisier_series_warning
 from skisnow.geometry import Disc, SkiPiece, Tool
 
 from .conftest import MakeCampaign
@@ -233,6 +233,31 @@ def test_noisier_series_among_quieter_ones_have_their_own_spreads() -> None:
     (warning,) = noisier_series_warning(model, [f"P{number}" for number in range(40)])
     assert warning.fields["n"] == (model.group == 1).sum()
     assert warning.fields["first"][:2] == [f"P{number}" for number in np.flatnonzero(model.group == 1)[:2]]
+
+
+@pytest.mark.parametrize("noisier", [6, 15, 34])
+def test_two_classes_are_a_maximum_of_the_likelihood(noisier: int) -> None:
+    """Few or many of 40 series: the classes are those of scipy's gamma densities with the weighted variances."""
+    random, first = np.random.default_rng(noisier), np.arange(40) < noisier
+    degrees = np.array([np.full(40, 6.0), random.uniform(0.5, 1.0, 40)])
+    squares = np.where(first, 9.0, 1.0) * random.chisquare(degrees)
+    degrees[1, ::4] = squares[1, ::4] = 0.0  # no information
+    probability, gain, factor = _two_classes(list(zip(squares, degrees, strict=True)))
+    seen = degrees > 0.0
+
+    def likelihood(weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        scale = (squares @ weight) / (degrees @ weight)
+        density = np.ones_like(squares)
+        density[seen] = stats.gamma.pdf(squares[seen], degrees[seen] / 2.0, scale=2.0 * np.repeat(scale, seen.sum(1)))
+        return density.prod(axis=0), scale
+
+    (large, noisy), (small, quiet), (one, _) = map(likelihood, (probability, 1.0 - probability, np.ones(40)))
+    share = probability.mean()
+    mixed = share * large + (1.0 - share) * small
+    assert probability == pytest.approx(share * large / mixed, abs=1e-4)
+    assert gain == pytest.approx(2.0 * np.log(mixed / one).sum(), rel=1e-4)
+    assert factor == pytest.approx(math.sqrt(noisy[0] / quiet[0]), rel=1e-4)
+    assert np.mean((probability > 0.5) == first) > 0.8
 
 
 @pytest.mark.parametrize("count", [1, 2, 10, 40])
