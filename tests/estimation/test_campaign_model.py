@@ -288,6 +288,20 @@ def test_b_is_corrected_for_its_dilution() -> None:
     assert np.mean(covered) > 0.85
 
 
+def test_a_series_without_hardness_takes_no_part() -> None:
+    """A hardness of 0 or below is as good as none: the other series have the same numbers."""
+    readings, _ = simulated(8)
+    H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    fits = []
+    for missing in (np.nan, 0.0, -0.5, -1e9):
+        H[3] = missing
+        fits.append(fit_campaign(readings, H, UNCERTAINTY))
+    for other in fits:
+        assert np.isnan(other.log_hardness[3])
+        assert not other.counts[3]
+        np.testing.assert_array_equal(other.hardness_interval, fits[0].hardness_interval)
+
+
 def test_one_series_has_a_b_without_an_interval() -> None:
     readings, _ = simulated(1)
     H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])

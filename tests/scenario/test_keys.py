@@ -30,6 +30,42 @@ def test_defaults_are_in_the_unit_of_their_key() -> None:
     assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 1e-6, 0.01)
 
 
+DEFAULTS = {
+    "slope": {"smooth_m": 0.0, "origin_x_m": 0.0, "origin_y_m": 0.0, "gravity_m_per_s2": 9.81},
+    "snow": {
+        "shear_displacement_mm": 0.02, "hardness_growth_per_mm": 0.0, "damping_N_s_per_mm3": 0.0, "delayed_share": 0.0,
+        "retardation_time_ms": 100.0,
+    },
+    "friction": {"mu_1_s_per_m": 0.0},
+    "drag": {"air_density_kg_per_m3": 1.2},
+    "sledge": {"centre_of_mass_forward_m": 0.0},
+    "ski": {"stiffness_factor": 1.0, "clamp_length_m": 0.3, "damping_ratio": 0.02},
+    "start": {"x_m": 0.0, "y_m": 0.0, "heading_deg": 0.0},
+    "run": {"output_ms": 10.0},
+    "shear": {
+        "relative_decrease_per_rad": 0.266, "transverse_friction": 0.0, "least_shear_plane_deg": 5.0,
+        "residual_ratio": 1.0, "slip_weakening_mm": 1.0,
+    },
+    "solver": {"step_ms": 0.5, "tolerance_mm": 0.001, "groove_tolerance": 1e-4, "delayed_spacing_mm": 1.0},
+    "skier": {
+        "first_turn_s": 0.8, "turn_time_s": 2.0, "turns": 4.5, "turn_angle_deg": 30.0, "pole_clearance_m": 0.85,
+        "brakes_to_m_per_s": 0.0, "stops_after_s": 3.0, "assumed_H_V_N_per_mm3": 0.0, "assumed_S_f_N_per_mm2": 0.0,
+        "line_rate_per_s": 2.0, "longest_leg_m": 1.05, "shortest_leg_m": 0.32, "leg_load": 3.0,
+        "greatest_edge_deg": 66.0, "greatest_hip_deg": 60.0, "hip_torque_Nm": 150.0, "shift_m": 0.15,
+        "shift_speed_m_per_s": 1.5, "greatest_lean_deg": 50.0, "greatest_slip_deg": 28.0, "least_slip_deg": 13.0,
+        "braking_per_s": 0.8, "outer_share": 0.65, "edge_rate_per_s": 35.0, "leg_gain": 0.7,
+        "leg_yielding_per_s": 0.7, "edge_gain": 1.0, "highest_flight_m": 2.0, "control_period_ms": 5.0,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("section", DEFAULTS)
+def test_each_number_has_its_default(section: str) -> None:
+    keys = {name.partition(".")[2]: key for name, key in SCENARIO_KEYS.items() if name.startswith(f"{section}.")}
+    numbers = {name: key.default for name, key in keys.items() if key.kind == "number" and key.default is not None}
+    assert numbers == pytest.approx(DEFAULTS[section], rel=1e-12)
+
+
 def test_what_must_be_given() -> None:
     """Slope, snow, ski and the end of the run have further rules."""
     assert {name for name, key in SCENARIO_KEYS.items() if key.needed} == {

@@ -135,7 +135,9 @@ def test_opensim_has_y_up_and_z_to_the_right(own: Run) -> None:
 def test_external_loads_name_columns_of_the_motion_file(own: Run, tmp_path: Path) -> None:
     """Three columns behind each identifier; the right ski acts on the right foot."""
     write_boots(own, tmp_path / "turn.sto")
-    loads = ET.parse(tmp_path / "turn_external_loads.xml").getroot()
+    text = (tmp_path / "turn_external_loads.xml").read_text(encoding="utf-8")
+    assert {line.count("<") - line.count("</") for line in text.splitlines()} == {0, 1}  # each element on its own line
+    loads = ET.fromstring(text)
     assert loads.findtext(".//datafile") == "turn.sto"
     columns = (tmp_path / "turn.sto").read_text(encoding="utf-8").splitlines()[6].split("\t")
     forces = loads.findall(".//ExternalForce")

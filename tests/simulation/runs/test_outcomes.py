@@ -4,6 +4,7 @@ import functools
 import os
 import signal
 import threading
+import time
 from typing import Any
 
 import numpy as np
@@ -37,8 +38,10 @@ def flat_scenario(slope: Plane | Profile, *, speed: float, x: float) -> Scenario
 
 
 def test_finished() -> None:
+    begin = time.perf_counter()
     run = simulate(load_scenario("carved-46m", changes={"run.duration_s": 0.3137}))
     assert run.outcome == "finished"
+    assert 0.0 < run.wall_s <= time.perf_counter() - begin
     assert run.time[-1] == 0.3137
     assert run.time[:-1] == pytest.approx(np.arange(32) * 0.01, abs=1e-12)
     assert is_sound(run)
