@@ -23,8 +23,14 @@ from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
-from skisnow.interop.fmu.models import UNITS, _require_builtin_laws, _snow_parameters, contact_model, sledge_model
-from skisnow.interop.fmu.writing import Version
+from skisnow.interop.fmu import (
+    UNITS,
+    Version,
+    _require_builtin_laws,
+    _snow_parameters,
+    contact_model,
+    sledge_model,
+)
 from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulation.run_setup import laid_out
 from skisnow.simulation.sledge_body import rotation
@@ -449,7 +455,7 @@ def test_no_model_is_made_of_laws_in_python(model: Callable[..., object], monkey
     def refused(_: SnowField) -> None:
         raise ParameterError("an FMU has no Python in it")
 
-    monkeypatch.setattr("skisnow.interop.fmu.models._require_builtin_laws", refused)
+    monkeypatch.setattr("skisnow.interop.fmu._require_builtin_laws", refused)
     with pytest.raises(ParameterError, match="no Python"):
         model(SCENARIO, step=STEP)
 

@@ -7,8 +7,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from skisnow import load_scenario, simulate
-from skisnow.interop.opensim.c3d import read_c3d
-from skisnow.interop.opensim.motion_text import read_motion, read_trc
+from skisnow.interop.opensim import read_c3d, read_motion, read_trc
 from skisnow.replay import replay_of_file
 from skisnow.replay.page import replay_bytes
 from skisnow.report.run.file import write_run_file
@@ -66,15 +65,15 @@ def _drawn(folder: Path) -> object:
 
 READERS = (
     single_file(
-        "markers.trc", _TRC, lambda path: repr(read_trc(path)), TEXT, "interop.opensim.motion_text:read_trc",
+        "markers.trc", _TRC, lambda path: repr(read_trc(path)), TEXT, "interop.opensim:read_trc",
         target="m.trc",
     ),
     single_file(
-        "motion.mot", _MOT, lambda path: repr(read_motion(path)), TEXT, "interop.opensim.motion_text:read_motion",
+        "motion.mot", _MOT, lambda path: repr(read_motion(path)), TEXT, "interop.opensim:read_motion",
         target="m.mot",
     ),
     single_file(
-        "markers.c3d", _c3d, lambda path: repr(read_c3d(path)), BINARY, "interop.opensim.c3d:read_c3d", target="a.c3d"
+        "markers.c3d", _c3d, lambda path: repr(read_c3d(path)), BINARY, "interop.opensim:read_c3d", target="a.c3d"
     ),
     Reader(
         name="run.nc", target="run.nc", files=run_files, mutations=NETCDF, read=_drawn,

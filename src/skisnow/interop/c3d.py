@@ -1,97 +1,17 @@
-"""Markers of a .c3d file."""
+"""Points and parameters of a .c3d file, the format of motion capture."""
 
 from __future__ import annotations
 
 import math
-import re
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import count, takewhile
-from pathlib import Path
 from typing import Final, TypeAlias
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
-from ..._support.errors import ParameterError
-from ..._support.user_files import ContentError, plain_bytes
-from .motion_text import METRES, MOST_BYTES, Markers
-
-_GROUPS: Final = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS")
-"""Lists of points that are not places, as gait programs write them."""
-_JOINT: Final = "ankle|knee|hip|pelvis|trunk|spine|thorax|waist|neck|head|shoulder|elbow|wrist|foot|toe|progress(ion)?"
-_QUANTITY: Final = re.compile(
-    rf"(angles|({_JOINT})[ _]?angle|forces?|moments?|torques?|powers?|GRF|velocit(y|ies)|accelerations?)"
-    r"([ _.]?([fm]?[xyz]|[lr]|left|right))?[ _]?\d*$",
-    re.IGNORECASE,
-)
-"""Ends of the names that these programs give to such points, for files without the lists."""
-
-
-def read_c3d(path: str | Path) -> Markers:
-    """Read the markers of a .c3d file.
-
-    Angles, forces, moments and powers that a program for gait stored among the points are listed in ``omitted``, and
-    points without a name by their number.
-
-    Raises ParameterError: the file cannot be read or is damaged, or it has no markers or no sound unit.
-    """
-    try:
-        content = c3d_content(plain_bytes(path, most_bytes=MOST_BYTES))
-    except ContentError:
-        raise
-    except ParameterError as error:
-        raise ParameterError("{path} cannot be read as .c3d: {error}. Export it again").tag(
-            "cannot_read", path=path, error=error
-        ) from error
-    about = {name: values for (group, name), values in content.parameters.items() if group == "POINT"}
-    rate, first, points = content.rate, content.first_frame, content.points
-    labels, units = _labels_and_units(about)
-    quantities = {name for group in _GROUPS for name in _texts_of(about, group)}
-    names = labels[: points.shape[1]]
-    columns = [i for i, name in enumerate(names) if name and name not in quantities and not _QUANTITY.search(name)]
-    if not columns:
-        raise ParameterError("{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.").tag(
-            "out_of_range", path=path
-        )
-    unknown = next((i for i in columns if units[i] not in METRES), None)
-    if unknown is not None:
-        raise ParameterError(
-            "{path}: marker {name} is in {unit!r}. Allowed: {metres}. Export the markers in one of these units."
-        ).tag("out_of_range", path=path, name=names[unknown], unit=units[unknown], metres=list(METRES))
-    if not (np.isfinite(rate) and rate > 0.0):
-        raise ParameterError("{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.").tag(
-            "out_of_range", path=path, rate=rate
-        )
-    sizes = np.array([METRES[units[i]] for i in columns])
-    place = points[:, columns] * sizes[:, None]
-    time = (first + np.arange(len(place))) / rate
-    names += [""] * (points.shape[1] - len(names))
-    omitted = tuple(name or f"point {i + 1}" for i, name in enumerate(names) if i not in columns)
-    try:
-        return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
-    except ParameterError as error:
-        raise ParameterError("{path}: {problem}").tag("damaged", path=path, problem=error) from error
-
-
-def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]]:
-    """Name and unit of each point; further blocks of 255 names are called LABELS2, LABELS3 and so on."""
-    labels: list[str] = []
-    units: list[str] = []
-    blocks = (str(number) if number > 1 else "" for number in count(1))
-    for block in takewhile(lambda block: f"LABELS{block}" in about, blocks):
-        names, of_block = _texts_of(about, f"LABELS{block}"), _texts_of(about, f"UNITS{block}")
-        labels += names
-        one = next(iter(of_block or units), "")
-        units += [unit.lower() for unit in (of_block if len(of_block) == len(names) else [one] * len(names))]
-    return labels, units
-
-
-def _texts_of(about: Mapping[str, Values], key: str) -> list[str]:
-    """Texts of a parameter; empty if it is missing."""
-    return [word for word in about.get(key, ()) if isinstance(word, str)]
-
+from .._support.arrays import FloatArray
+from .._support.errors import ParameterError
 
 Values: TypeAlias = Sequence[str] | Sequence[float]
 
