@@ -59,13 +59,10 @@ def read_caaml(path: str | Path) -> SnowPit:
     try:
         root = xml_tree(plain_bytes(path, most_bytes=MOST_BYTES))
     except ContentError as failure:
+        allowed = Message("a snow profile in CAAML 5 or 6")
+        action = Message("Export it again from the program that wrote it.")
         problem = error(
-            "unreadable_file",
-            path.name,
-            row=failure.line,
-            value=failure.what,
-            allowed=Message("a snow profile in CAAML 5 or 6"),
-            action=Message("Export it again from the program that wrote it."),
+            "unreadable_file", path.name, row=failure.line, value=failure.what, allowed=allowed, action=action
         )
         raise FieldDataError([problem]) from failure
     return _Profile(path.name, root).pit()
@@ -78,26 +75,24 @@ class _Profile:
         self._file = file
         self._root = root
         if root.name != "SnowProfile" or NAMESPACE.fullmatch(root.namespace) is None:
+            allowed = Message("SnowProfile of CAAML 5 or 6")
             root_name = f"{root.name} of {root.namespace or 'no namespace'}"
-            self._refuse(
-                "SnowProfile", root_name, Message("SnowProfile of CAAML 5 or 6"), Message("Export it as CAAML 6.")
-            )
+            self._refuse("SnowProfile", root_name, allowed, Message("Export it as CAAML 6."))
         measured = root.child("snowProfileResultsOf", "SnowProfileMeasurements")
         if measured is None:
-            self._refuse(
-                "snowProfileResultsOf",
-                "nothing",
-                Message("SnowProfileMeasurements"),
-                Message("The file contains no profile."),
-            )
+            action = Message("The file contains no profile.")
+            self._refuse("snowProfileResultsOf", "nothing", Message("SnowProfileMeasurements"), action)
         self._measured = measured
         self._is_version_6 = "v6" in root.namespace
-        height = self._total_snow_height()
+        components = measured.child("snowPackCond", "hS", "Components")
+        if components is not None:
+            self._snow_height = self._quantity(LENGTH, components, "height")
+        else:
+            self._snow_height = self._quantity(LENGTH, measured, "hS", "Components", "snowHeight")
         self._from_ground = measured.attributes.get("dir", "top down") != "top down"
-        if self._from_ground and height is None:
+        if self._from_ground and self._snow_height is None:
             action = Message("Add snowPackCond/hS, or export it top down.")
             self._refuse("SnowProfileMeasurements", "bottom up", Message("top down, or the height of the snow"), action)
-        self._snow_height = height
 
     def _refuse(self, element: str, value: str, allowed: str, action: str) -> NoReturn:
         """Raise a FieldDataError with one problem at an element of this file."""
@@ -110,9 +105,12 @@ class _Profile:
         root, measured = self._root, self._measured
         place = root.child("locRef", "ObsPoint") or root.child("locRef") or root
         latitude, longitude = self._position(place)
+        records = (root.child("timeRef", "recordTime"), root.child("validTime"))
+        paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
+        times = (record.text_of(*path) for record in records if record for path in paths)
         return SnowPit(
             name=place.text_of("name") or root.attributes.get("id", ""),
-            time=self._time(),
+            time=next(filter(None, times), ""),
             observer=self._observer(),
             comment=root.text_of("metaData", "comment") or measured.text_of("comment"),
             country=place.text_of("country"),
@@ -135,19 +133,6 @@ class _Profile:
     def _children_by_profile(self, profile: str, name: str) -> list[tuple[Element, Element]]:
         """Pairs of profile and child for all profiles of a name, such as "tempProfile", and children of a name."""
         return [(parent, child) for parent in self._measured.named(profile) for child in parent.named(name)]
-
-    def _total_snow_height(self) -> float | None:
-        """Total snow height (m) of the snow pit, or None if the file states none."""
-        components = self._measured.child("snowPackCond", "hS", "Components")
-        if components is not None:
-            return self._quantity(LENGTH, components, "height")
-        return self._quantity(LENGTH, self._measured, "hS", "Components", "snowHeight")
-
-    def _time(self) -> str:
-        """Time of the observation as the file writes it, or the start of its period; "" if it is missing."""
-        records = (self._root.child("timeRef", "recordTime"), self._root.child("validTime"))
-        paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
-        return next(filter(None, (record.text_of(*path) for record in records if record for path in paths)), "")
 
     def _aspect(self, place: Element, *path: str) -> str:
         """Aspect of the slope at a path below an element: a compass point, or degrees as text; "" if unknown."""
@@ -202,12 +187,9 @@ class _Profile:
         densities = tuple(self._density(*pair) for pair in self._children_by_profile("densityProfile", "Layer"))
         middle = median(density.snow_density for density in densities) if densities else LIGHTEST
         if 0.0 < middle < LIGHTEST:
-            self._refuse(
-                "density",
-                f"a median of {middle:g} kg/m³",
-                Message("{lightest:g} kg/m³ or more", lightest=LIGHTEST),
-                Message("If the numbers are g/cm³, state the unit gcm-3."),
-            )
+            allowed = Message("{lightest:g} kg/m³ or more", lightest=LIGHTEST)
+            action = Message("If the numbers are g/cm³, state the unit gcm-3.")
+            self._refuse("density", f"a median of {middle:g} kg/m³", allowed, action)
         return densities
 
     def _density(self, profile: Element, layer: Element) -> LayerDensity:
@@ -275,23 +257,15 @@ class _Profile:
         """Reject a value outside the limits, which count as allowed; `unit` is for the error message."""
         low, high = limits
         if not low <= value <= high:
-            self._refuse(
-                element,
-                f"{value:.6g} {unit}",
-                Message("a number from {low:g} to {high:g} {unit}", low=low, high=high, unit=unit),
-                Message("Correct the number or its unit."),
-            )
+            allowed = Message("a number from {low:g} to {high:g} {unit}", low=low, high=high, unit=unit)
+            self._refuse(element, f"{value:.6g} {unit}", allowed, Message("Correct the number or its unit."))
 
     def _required_number(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
         """Number of a child element in SI; rejects a missing one."""
         value = self._quantity(units, parent, name, profile=profile)
         if value is None:
-            self._refuse(
-                name,
-                "nothing",
-                Message("a number"),
-                Message("Give every {name} its {name_2}.", name=parent.name, name_2=name),
-            )
+            action = Message("Give every {name} its {name_2}.", name=parent.name, name_2=name)
+            self._refuse(name, "nothing", Message("a number"), action)
         return value
 
     def _quantity(
@@ -315,18 +289,11 @@ class _Profile:
         """Value in SI; rejects an unknown unit or a number that is too large."""
         converted = units.convert(value, unit)
         if converted is None:
-            allowed, action = (
-                Message("a unit among {sizes}", sizes=list(units.sizes)),
-                Message("Correct the unit, or convert the numbers."),
-            )
-            self._refuse(name, unit or "", allowed, action)
+            allowed = Message("a unit among {sizes}", sizes=list(units.sizes))
+            self._refuse(name, unit or "", allowed, Message("Correct the unit, or convert the numbers."))
         if not abs(converted) <= LARGEST:
-            self._refuse(
-                name,
-                f"{value:g} {unit or ''}",
-                Message("a number to ±{largest:g} in SI", largest=LARGEST),
-                Message("Correct the number."),
-            )
+            allowed = Message("a number to ±{largest:g} in SI", largest=LARGEST)
+            self._refuse(name, f"{value:g} {unit or ''}", allowed, Message("Correct the number."))
         return converted
 
     def _finite(self, element: str, text: str) -> float:

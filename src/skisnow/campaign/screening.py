@@ -25,7 +25,7 @@ from .problems import (
     with_sheet_name,
 )
 from .reading.table_forms import PENETRATION, SHEAR
-from .records import Campaign, PenetrationTests, ShearTests
+from .records import Campaign, PenetrationTests
 
 _ROUNDING: Final = 1e-9  # relative; limits and readings come from decimal millimetres
 
@@ -187,8 +187,10 @@ def flag_problems(
     problems: list[Problem] = []
     if campaign.penetration is not None:
         problems += _penetration_problems(campaign, campaign.penetration, masks_penetration, geometry)
-    if campaign.shear is not None:
-        problems += _shear_problems(campaign, campaign.shear, masks_shear)
+    if (tests := campaign.shear) is not None:
+        for index, code in _flagged_experiments(masks_shear):
+            value = tests.cancelled[index] if code == "cancelled" else _number(tests.penetration_depth[index] / MM)
+            problems.append(_flag(campaign, code, SHEAR.file, int(tests.row[index]), tests.experiment[index], value))
     return [with_sheet_name(problem, campaign.places) for problem in problems]
 
 
@@ -203,13 +205,6 @@ def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, 
 def _number(value: float) -> Message:
     """Message of a number, so that it gets the decimal sign of the language in which a problem is shown."""
     return Message("{value:.10g}", value=value)
-
-
-def _shear_problems(campaign: Campaign, tests: ShearTests, masks: Mapping[str, BoolArray]) -> Iterator[Problem]:
-    """Warnings for all flags of shear tests; the value is the reason if cancelled, otherwise the depth (mm)."""
-    for index, code in _flagged_experiments(masks):
-        value = tests.cancelled[index] if code == "cancelled" else _number(tests.penetration_depth[index] / MM)
-        yield _flag(campaign, code, SHEAR.file, int(tests.row[index]), tests.experiment[index], value)
 
 
 def _penetration_problems(

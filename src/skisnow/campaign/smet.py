@@ -195,10 +195,8 @@ class _Reading:
         huge = ~np.isnan(table) & ~(np.abs(values) <= LARGEST)
         if huge.any():
             name = names[int(np.argmax(huge.any(axis=0)))]
-            allowed, action = (
-                Message("numbers to ±{largest:g} in SI", largest=LARGEST),
-                Message("Correct units_offset, units_multiplier or the numbers."),
-            )
+            allowed = Message("numbers to ±{largest:g} in SI", largest=LARGEST)
+            action = Message("Correct units_offset, units_multiplier or the numbers.")
             self._refuse(self._header["fields"][0], name, "a larger number", allowed, action)
         return values
 
@@ -244,9 +242,8 @@ class _Reading:
         line, text = self._header[key]
         numbers = [self._number(line, key, part) for part in text.split()]
         if len(numbers) != len(names):
-            self._refuse(
-                line, key, f"{len(numbers)} numbers", f"{len(names)}, one for each field", "Correct the header."
-            )
+            allowed = f"{len(names)}, one for each field"
+            self._refuse(line, key, f"{len(numbers)} numbers", allowed, "Correct the header.")
         return numbers
 
     def _times_and_values(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -16,7 +16,6 @@ from ..._support.units import N_PER_MM3
 from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
 from ..reading.table_forms import TableForm
-from ..records import Campaign
 from .answers import NONE, Answers, Dialogue, Question
 from .columns import Note, choose_columns, is_about_numbers, stated_days, stated_sites
 from .folder import ToolText, campaign_files, described_tools, description
@@ -58,12 +57,18 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     """
     ignored, hides = frozenset(answers.ignore), answers.cells.get(HIDDEN) == "no"
     sheets = [replace(sheet, ignored=ignored, hides_columns=hides) for sheet in read_sheets(name, data)]
-    sections = {sheet.name: find_sections(sheet, answers.table) for sheet in sheets}
+    sections = [section for sheet in sheets for section in find_sections(sheet, answers.table)]
     dialogue = Dialogue(answers)
-    kinds = [(section, _choose_table_form(section, dialogue)) for on_sheet in sections.values() for section in on_sheet]
-    forms = [(section, form) for section, form in kinds if form is not None]
-    notes = _notes(sheets, [section for section, _ in kinds])
-    if not kinds:
+    forms = []
+    for section in sections:
+        form = table_of(section, answers)
+        if form is not None:
+            forms.append((section, form))
+        else:
+            value, proposed = ", ".join(section.headings), likely_table(section)
+            dialogue.ask("table", section.key, section.key, value=value, choices=(*KINDS, NONE), proposed=proposed)
+    notes = _notes(sheets, sections)
+    if not sections:
         allowed = Message("a row of headings such as Versuch, Kantwinkel, Last, Eindringtiefe")
         action = Message('State the row of headings by --table "SHEET:ROW=penetration".')
         dialogue.refuse("no_table", name, allowed=allowed, action=action)
@@ -84,16 +89,6 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
         files = campaign_files(_merged_texts(tables), described, name, data)
         problems = _problems(name, files, tables, is_stated=bool(answers.unit))
     return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
-
-
-def _choose_table_form(section: Section, dialogue: Dialogue) -> TableForm | None:
-    """Table that a section of a sheet contains; None, with a question added, if it is not clear."""
-    form = table_of(section, dialogue.answers)
-    if form is None:
-        value = ", ".join(section.headings)
-        proposed = likely_table(section)
-        dialogue.ask("table", section.key, section.key, value=value, choices=(*KINDS, NONE), proposed=proposed)
-    return form
 
 
 def _notes(sheets: Sequence[Sheet], sections: Sequence[Section]) -> tuple[Note, ...]:
@@ -117,9 +112,8 @@ def _import_table(section: Section, form: TableForm, dialogue: Dialogue, notes: 
     own = [note for note in notes if _is_about_table(note, section.sheet.name, {section.sheet.name})]
     before = len(dialogue.open)
     columns = choose_columns(section, form, dialogue, own)
-    if len(dialogue.open) > before:  # rows would repeat the same error in each
-        return ImportedTable(section, form, tuple(columns), ())
-    rows = stored_rows(section, columns, form, dialogue)
+    # with an open question the rows would repeat the same error in each
+    rows = [] if len(dialogue.open) > before else stored_rows(section, columns, form, dialogue)
     return ImportedTable(section, form, tuple(columns), tuple(rows))
 
 
@@ -165,8 +159,7 @@ def _with_names(
     named = []
     for table in tables:
         sheet = table.section.sheet.name
-        own = _notes_above(table, tables, notes)
-        site = "" if any("site" in row.cells for row in table.rows) else _choose_site(sheet, table, dialogue, own)
+        site = "" if any("site" in row.cells for row in table.rows) else _choose_site(table, tables, dialogue, notes)
         days = stated_days(note for note in notes if _is_about_table(note, sheet, with_tables))
         added = {"site": site} | ({"time": days.pop()} if len(days) == 1 else {})
         rows = []
@@ -181,27 +174,24 @@ def _with_names(
     return _with_sites_before_names(named)
 
 
-def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: Sequence[Note]) -> list[Note]:
-    """Notes from which the site of a table follows: those just above it if they state one, else all of the sheet."""
-    section = table.section
-    own = [note for note in notes if note.sheet == section.sheet.name]
-    ends = [other.section.end for other in tables if other.section.sheet.name == section.sheet.name]
-    above = max((end for end in ends if end <= section.header), default=0)
-    near = [note for note in own if above < note.row <= section.header]
-    return near if stated_sites(section.sheet.name, near) else own
-
-
-def _choose_site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Sequence[Note]) -> str:
-    """Site of a sheet's table, from the answers or the sheet and its notes; "" with a question if it is unclear."""
-    for key in (table.section.key, sheet):
+def _choose_site(
+    table: ImportedTable, tables: Sequence[ImportedTable], dialogue: Dialogue, notes: Sequence[Note]
+) -> str:
+    """Site of a table by the answers, the notes just above it or else of its sheet; "" if a question is added."""
+    section, sheet = table.section, table.section.sheet.name
+    for key in (section.key, sheet):
         if key in dialogue.answers.site:
             return dialogue.answers.site[key]
-    stated = stated_sites(sheet, notes)
+    own = [note for note in notes if note.sheet == sheet]
+    ends = [other.section.end for other in tables if other.section.sheet.name == sheet]
+    above = max((end for end in ends if end <= section.header), default=0)
+    near = [note for note in own if above < note.row <= section.header]
+    stated = stated_sites(sheet, near) or stated_sites(sheet, own)
     if len(stated) == 1:
         return stated.pop()
     if not dialogue.has_asked("site", sheet):
         value = ", ".join(sorted(stated)) or None
-        dialogue.ask("site", sheet, table.section.key, value=value, choices=tuple(sorted(stated)), proposed=sheet)
+        dialogue.ask("site", sheet, section.key, value=value, choices=tuple(sorted(stated)), proposed=sheet)
     return ""
 
 
@@ -258,21 +248,17 @@ def _template(answers: Answers, tables: Sequence[ImportedTable]) -> Answers:
 def _problems(
     name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTable], *, is_stated: bool
 ) -> tuple[Problem, ...]:
-    """Errors of the proposed campaign, at sheets and rows of the file; also an impossible H_V unless `is_stated`."""
+    """Errors of the proposed campaign, at sheets and rows of the file.
+
+    Also an error for an impossible median H_V unless units are stated: columns may be exchanged, or a unit wrong.
+    """
     try:
         campaign = campaign_of_files(files)
     except FieldDataError as failure:
-        problems = [
-            problem for problem in failure.problems if isinstance(problem, Problem) and problem.severity == "error"
-        ]
-        return tuple(_at_source(name, problem, tables) for problem in problems)
-    return () if is_stated else tuple(_far_from_snow(name, campaign))
-
-
-def _far_from_snow(name: str, campaign: Campaign) -> Iterator[Problem]:
-    """Error for an impossible median H_V of a campaign: columns may be exchanged, or a unit wrong."""
-    if (tests := campaign.penetration) is None:
-        return
+        problems = (problem for problem in failure.problems if isinstance(problem, Problem))
+        return tuple(_at_source(name, problem, tables) for problem in problems if problem.severity == "error")
+    if is_stated or (tests := campaign.penetration) is None:
+        return ()
     last = tests.first[1:] - 1
     volume = [
         float(campaign.tools[tool].displaced_volume(depth, angle))
@@ -281,14 +267,12 @@ def _far_from_snow(name: str, campaign: Campaign) -> Iterator[Problem]:
     loads = zip(tests.load[last].tolist(), volume, strict=True)
     hardness = [load / size / N_PER_MM3 for load, size in loads if load > 0.0 and size > 0.0]
     middle = float(np.median(hardness)) if hardness else SOFTEST
-    if not SOFTEST <= middle <= HARDEST:
-        yield error(
-            "implausible_hardness",
-            name,
-            value=Message("a median H_V of {middle:.3g} N/mm³", middle=middle),
-            allowed=Message("{low:g} to {high:g} N/mm³", low=SOFTEST, high=HARDEST),
-            action=Message("Correct the headings and units of load and depth, or state them by --column and --unit."),
-        )
+    if SOFTEST <= middle <= HARDEST:
+        return ()
+    value = Message("a median H_V of {middle:.3g} N/mm³", middle=middle)
+    allowed = Message("{low:g} to {high:g} N/mm³", low=SOFTEST, high=HARDEST)
+    action = Message("Correct the headings and units of load and depth, or state them by --column and --unit.")
+    return (error("implausible_hardness", name, value=value, allowed=allowed, action=action),)
 
 
 def _at_source(name: str, problem: Problem, tables: Sequence[ImportedTable]) -> Problem:

@@ -266,9 +266,8 @@ def _split_series(sections: Sequence[Section]) -> list[Section]:
         [heading_words(text) for place, text in zip(part.columns, part.headings, strict=True) if place in part.own]
         for part in series
     ]
-    if len(series) > 1 and all(words == own[0] for words in own) and not _names_tests(series[0].headings):
-        return _with_titles(series)
-    return series
+    is_titled = len(series) > 1 and all(words == own[0] for words in own) and not _names_tests(series[0].headings)
+    return _with_titles(series) if is_titled else series
 
 
 def _names_tests(headings: Sequence[str]) -> bool:

@@ -117,16 +117,8 @@ def _sheet(title: str, rows: Rows, layout: Layout, fractions: set[tuple[int, int
         for row in (range(len(rows)) if layout.is_hidden else layout.hidden & set(range(len(rows))))
         for column in range(len(rows[row]))
     }
-    excluded = {HIDDEN: frozenset(hidden), STRUCK: layout.struck}
-    return Sheet(
-        title,
-        rows,
-        filled,
-        frozenset(fractions),
-        excluded=excluded,
-        partly_struck=layout.partly_struck,
-        hidden_columns=layout.hidden_columns,
-    )
+    excluded, partly_struck = {HIDDEN: frozenset(hidden), STRUCK: layout.struck}, layout.partly_struck
+    return Sheet(title, rows, filled, frozenset(fractions), "", excluded, partly_struck, layout.hidden_columns)
 
 
 def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> tuple[Rows, str]:

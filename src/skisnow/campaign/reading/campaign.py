@@ -225,19 +225,11 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
 
 
 def read_description(files: RawFiles) -> CampaignFile | None:
-    """Read campaign.toml and corrections.csv; `files` gets their headings, corrections and problems."""
-    described = _read_campaign_toml(files)
-    if described is not None:
-        files.headings = described.headings
-    table = read_table(CORRECTIONS, files)
-    if table is not None and not table.absent:
-        files.corrections = corrections_by_file(table, files.problems)
-    return described
+    """Contents of campaign.toml, None if it is missing, empty or unreadable; reads corrections.csv, too.
 
-
-def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
-    """Contents of campaign.toml; None, with a problem added, if it is missing, empty or unreadable."""
-    decoded = files.decoded(CAMPAIGN_FILE, decode)
+    `files` gets the headings of campaign.toml, the corrections, and the problems of both.
+    """
+    decoded, described = files.decoded(CAMPAIGN_FILE, decode), None
     if CAMPAIGN_FILE in files.absent:
         action = Message(
             "`skisnow new campaign` writes one into this folder; `skisnow import FILE --out DIR` makes a campaign of a "
@@ -245,14 +237,18 @@ def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
         )
         allowed = Message("a file of this name in the folder")
         files.problems.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
-    if decoded is None:
-        return None
-    if not decoded.text.strip():
+    elif decoded is not None and not decoded.text.strip():
         action, allowed = Message("Describe the tools and plates that the tables name."), Message("keys and values")
         files.problems.append(error("empty_file", CAMPAIGN_FILE, value="nothing", allowed=allowed, action=action))
-        return None
-    files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
-    return read_campaign_file(decoded.text, files.problems)
+    elif decoded is not None:
+        files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
+        described = read_campaign_file(decoded.text, files.problems)
+    if described is not None:
+        files.headings = described.headings
+    table = read_table(CORRECTIONS, files)
+    if table is not None and not table.absent:
+        files.corrections = corrections_by_file(table, files.problems)
+    return described
 
 
 def _require_valid(raw: _RawCampaign) -> Campaign:

@@ -87,18 +87,20 @@ class RawFiles:
 
     def read(self, name: str) -> bytes | None:
         """Bytes of a file; None if it is missing, or if it cannot be read, which is added to the problems."""
+        value: str = Message("something other than a plain file")
         try:
             data = self.files.read(name)
         except FileNotFoundError:
             self.absent.add(name)
             return None
         except OSError as failure:
-            self._report_unreadable(name, failure.strerror or str(failure))
-            return None
+            data, value = None, failure.strerror or str(failure)
         if data is None:
-            self._report_unreadable(name, Message("something other than a plain file"))
-            return None
-        self.hashes[name] = hashlib.sha256(data).hexdigest()
+            action = Message("Make the file readable, or remove it from the campaign.")
+            allowed = Message("a plain file that may be read")
+            self.problems.append(error("unreadable_file", name, value=value, allowed=allowed, action=action))
+        else:
+            self.hashes[name] = hashlib.sha256(data).hexdigest()
         return data
 
     def csv_text(self, form: TableForm) -> CsvText | None:
@@ -118,12 +120,6 @@ class RawFiles:
         except UnreadableTextError as failure:
             self.report_unreadable(name, failure)
             return None
-
-    def _report_unreadable(self, name: str, what: str) -> None:
-        """Add the problem that a file is unreadable; `what` is in its place instead of a plain file."""
-        action = Message("Make the file readable, or remove it from the campaign.")
-        allowed = Message("a plain file that may be read")
-        self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
     def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
         """Add the problem of a file that is not valid text."""
@@ -151,9 +147,8 @@ def _read_named_file(
     if "/" in name or "\\" in name or not name.lower().endswith(ending):
         refuse(form)
         return None
-    before = len(files.problems)
     data = files.read(name)
-    if data is None and len(files.problems) == before:
+    if name in files.absent:
         refuse(Message("a file of this name in the campaign's folder"))
     return data
 

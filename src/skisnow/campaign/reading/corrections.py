@@ -109,29 +109,25 @@ class Corrector:
             self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
     def _correct_record(self, cells: list[str], correction: Correction) -> None:
-        """Apply a correction to a record in place; adds a problem if its column or old value does not match."""
+        """Apply a correction to a record in place; a problem if its column, experiment or old value does not match."""
         position = self._position.get(correction.column)
         if position is None:
             allowed = Message("a column of {file}: {columns}", file=correction.file, columns=list(self._position))
             self._problems.append(correction.mismatch("column", correction.column, allowed))
             return
         cells.extend([""] * (len(self._header.columns) - len(cells)))
-        if self._matches_record(cells, position, correction):
-            is_number_here = self._mark == "," and correction.column in self._numbers and is_number(correction.new, ".")
-            cells[position] = correction.new.replace(".", ",") if is_number_here else correction.new
-
-    def _matches_record(self, cells: list[str], position: int, correction: Correction) -> bool:
-        """True if experiment and old value are those of the correction; otherwise adds a problem."""
         key_position = self._position.get(self._key)
         experiment = cells[key_position].strip() if key_position is not None else correction.experiment
         if experiment != correction.experiment:
             allowed = Message("the stored value: {experiment!r}", experiment=experiment)
             self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
-            return False
-        standing = cells[position].strip()
-        stands = number(standing, self._mark)  # NaN, no number, equals nothing
-        same_number = any(stands == number(correction.old, mark) for mark in (self._mark, "."))
-        if standing == correction.old or (correction.column in self._numbers and same_number):
-            return True
-        self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
-        return False
+            return
+        current = cells[position].strip()
+        value = number(current, self._mark)  # NaN, no number, equals nothing
+        is_number_column = correction.column in self._numbers
+        same_number = any(value == number(correction.old, mark) for mark in (self._mark, "."))
+        if current == correction.old or (is_number_column and same_number):
+            with_comma = self._mark == "," and is_number_column and is_number(correction.new, ".")
+            cells[position] = correction.new.replace(".", ",") if with_comma else correction.new
+        else:
+            self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {current!r}"))

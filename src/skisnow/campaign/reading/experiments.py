@@ -229,22 +229,20 @@ def drop_cone_tests(table: Table) -> DropConeTests:
 
 
 def single_rows(table: Table) -> dict[str, Any]:
-    """Fields of records of single rows by name: names, reasons of cancellations, lines of the file, other texts."""
+    """Fields of records of single rows by name: names, reasons of cancellations, lines of the file, other texts.
+
+    A status in one row of a test cancels all its rows at that site.
+    """
     names = {name: table.names[name].cells() for name in table.form.names}
-    return {**names, "cancelled": _cancellation_reasons(table), "row": table.row, "further": table.further}
+    tests = list(zip(names["site"], names[table.form.key], strict=True))
+    reasons: dict[tuple[str, str], dict[str, None]] = {}
+    for test, reason in zip(tests, table.names["status"].cells(), strict=True):
+        if reason:
+            reasons.setdefault(test, {})[reason] = None
+    cancelled = tuple("; ".join(reasons.get(test, ())) for test in tests)
+    return {**names, "cancelled": cancelled, "row": table.row, "further": table.further}
 
 
 def _cells_at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:
     """Texts of a column at the given row indices."""
     return tuple(map(column.names.__getitem__, column.code[rows].tolist()))
-
-
-def _cancellation_reasons(table: Table) -> tuple[str, ...]:
-    """Reason for cancelling each row, or "": a status in one row of a test cancels all its rows at that site."""
-    status = table.names["status"].cells()
-    together = list(zip(table.names["site"].cells(), table.names[table.form.key].cells(), strict=True))
-    reasons: dict[tuple[str, str], dict[str, None]] = {}
-    for name, reason in zip(together, status, strict=True):
-        if reason:
-            reasons.setdefault(name, {})[reason] = None
-    return tuple("; ".join(reasons.get(name, ())) for name in together)

@@ -110,7 +110,13 @@ class TableReading:
         mark = "."
         if text is not None:
             mark = _decimal_mark_of(form, self._file_header, text)
-            files.problems.extend(_separator_and_mark_notes(form.file, text.separator, mark))
+            for value in [SEPARATOR_NAMES[text.separator]] * (text.separator != ",") + ["decimal comma"] * (
+                mark == ","
+            ):
+                allowed = Message("commas between cells and decimal points, in the plain form")
+                action = Message("It was read as found; no action is needed.")
+                note = warning("separator", form.file, value=value, allowed=allowed, action=action, needs_action=False)
+                files.problems.append(note)
         files.problems.extend(check_header(form, self._file_header))
         corrections = files.corrections.get(form.file, {})
         corrected = (correction.column for of_one_row in corrections.values() for correction in of_one_row)
@@ -213,12 +219,3 @@ def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
         return decimal_mark(groups(), separator=text.separator)
     except UnreadableTextError:
         return "."  # what is unreadable is reported where the records are read
-
-
-def _separator_and_mark_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
-    """Notes, which need no action, about a separator other than a comma and about decimal commas."""
-    deviations = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
-    for value in deviations:
-        allowed = Message("commas between cells and decimal points, in the plain form")
-        action = Message("It was read as found; no action is needed.")
-        yield warning("separator", file, value=value, allowed=allowed, action=action, needs_action=False)

@@ -19,10 +19,8 @@ from .design import ReferenceNoise
 
 _ANGLE_DECIMALS = 4
 """Decimals of a turning angle in degrees: finer than 0.001 mm at the plate."""
-
-
 _REDRAWS = 1000
-"""Reduction of a series' scatter whose depth would shrink under a larger load: a tool does not rise under it."""
+"""Largest number of redraws of a series whose depth would shrink under a larger load: a tool does not rise under it."""
 
 
 class DrawnPenetration(NamedTuple):
@@ -78,15 +76,13 @@ def penetration(
     exponent = 1.0 / (1.0 + layering / 2.0)
     volume = (nominal[-1] / snow_hardness)[:, np.newaxis] * (load / nominal[-1]) ** exponent[:, np.newaxis]
     true_depth = design.SKI_PIECE.depth_at_volume(volume, edge_angle[:, np.newaxis])
-    depth = true_depth * (1.0 + scatter)
-    reading = _gauge_reading(depth, seating_offset, noise)
-    for _ in range(_REDRAWS if noise.depths_grow and noise.depth_scatter > 0 else 0):
+    for _ in range(1 + _REDRAWS):
+        depth = true_depth * (1.0 + scatter)
+        reading = _round_to_gauge(np.maximum(depth + seating_offset[:, np.newaxis], 0.0), noise)
         shrinks = (np.diff(reading, axis=1) < 0).any(axis=1)
-        if not shrinks.any():
+        if not (noise.depths_grow and noise.depth_scatter > 0 and shrinks.any()):
             break
         scatter[shrinks] = noise.depth_scatter * generator.standard_normal((int(shrinks.sum()), shape[1]))
-        depth = true_depth * (1.0 + scatter)
-        reading = _gauge_reading(depth, seating_offset, noise)
     sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.tests)]
     unknown = np.full(shape[0], np.nan)
     tests = PenetrationTests(
@@ -238,11 +234,6 @@ def _normal_within(
     while np.any(outside := (value < low) | (value > high)):
         value[outside] = centre[outside] + sd * generator.standard_normal(np.count_nonzero(outside))
     return value
-
-
-def _gauge_reading(depth: FloatArray, seating_offset: FloatArray, noise: ReferenceNoise) -> FloatArray:
-    """Gauge reading (m) of each depth (m), shape (series, 7), with the offset of its series, 0 or more, rounded."""
-    return _round_to_gauge(np.maximum(depth + seating_offset[:, np.newaxis], 0.0), noise)
 
 
 def _round_to_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
