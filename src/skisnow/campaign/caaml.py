@@ -183,21 +183,19 @@ class _Profile:
         )
 
     def _densities(self) -> tuple[LayerDensity, ...]:
-        """Densities (kg/m³) of the layers, in the order of the file; rejects a median too low for kg/m³."""
-        densities = tuple(self._density(*pair) for pair in self._children_by_profile("densityProfile", "Layer"))
-        middle = median(density.snow_density for density in densities) if densities else LIGHTEST
+        """Densities (kg/m³) of the layers in the order of the file; rejects values and a median outside the limits."""
+        densities = []
+        for profile, layer in self._children_by_profile("densityProfile", "Layer"):
+            top, thickness = self._top_and_thickness(profile, layer)
+            density = self._required_number(DENSITY, profile, layer, "density")
+            self._require_within("density", density, _DENSITIES, "kg/m³")
+            densities.append(LayerDensity(top, density, thickness))
+        middle = median(sample.snow_density for sample in densities) if densities else LIGHTEST
         if 0.0 < middle < LIGHTEST:
             allowed = Message("{lightest:g} kg/m³ or more", lightest=LIGHTEST)
             action = Message("If the numbers are g/cm³, state the unit gcm-3.")
             self._refuse("density", f"a median of {middle:g} kg/m³", allowed, action)
-        return densities
-
-    def _density(self, profile: Element, layer: Element) -> LayerDensity:
-        """Density (kg/m³) of one layer with its top and thickness (m); rejects a value outside the limits."""
-        top, thickness = self._top_and_thickness(profile, layer)
-        density = self._required_number(DENSITY, profile, layer, "density")
-        self._require_within("density", density, _DENSITIES, "kg/m³")
-        return LayerDensity(top, density, thickness)
+        return tuple(densities)
 
     def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
         """Snow temperature (°C) at a depth below the surface (m); rejects a value outside the limits."""

@@ -107,10 +107,7 @@ def read_smet(path: str | Path) -> StationSeries:
 
 
 def parse_smet(name: str, data: bytes) -> StationSeries:
-    """Parse the bytes of a SMET file.
-
-    Raises FieldDataError: as `read_smet`.
-    """
+    """Parse the bytes of a SMET file; errors as `read_smet`."""
     return _Reading(name, data).series()
 
 

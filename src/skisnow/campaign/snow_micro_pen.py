@@ -93,10 +93,7 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
 
 
 def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
-    """Parse the bytes of a ``.PNT`` file.
-
-    Raises FieldDataError: as `read_snow_micro_pen`.
-    """
+    """Parse the bytes of a ``.PNT`` file; errors as `read_snow_micro_pen`."""
     if not data:
         _refuse(name, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
     if len(data) < HEADER_BYTES:

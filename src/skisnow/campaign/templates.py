@@ -135,7 +135,8 @@ def workbook_bytes(name: str) -> bytes:
         (key, float(value) if is_number(value, ".") else value, quantity.unit, quantity.meaning)
         for key, value, quantity in keys_with_values(name)
     ]
-    _fill_sheet(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, _OBSERVERS])
+    observers = ("observers", "", "", "who; several are parted by semicolons")
+    _fill_sheet(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, observers])
     _fill_sheet(
         book.create_sheet(TOOLS),
         ("name", "shape", "length_mm", "width_mm", "diameter_mm", "radius_mm"),
@@ -151,9 +152,6 @@ def workbook_bytes(name: str) -> bytes:
     stream = io.BytesIO()
     book.save(stream)
     return stream.getvalue()
-
-
-_OBSERVERS: Final = ("observers", "", "", "who; several are parted by semicolons")
 
 
 def _fill_sheet(

@@ -65,17 +65,13 @@ def c3d_content(data: bytes) -> C3dContent:
         scale, rate = _floats(data[12:16] + data[20:24], processor).tolist()
         frames = last - first + 1
         if last == _LAST_COUNTED:  # a longer capture states its length in a parameter
-            frames = max(frames, int(_number(parameters, ("POINT", "FRAMES"), frames)))
+            stated = parameters.get(("POINT", "FRAMES"), ())
+            if len(stated) == 1 and isinstance(stated[0], float) and math.isfinite(stated[0]):
+                frames = max(frames, int(stated[0]))
         points = _points(data, BLOCK * (begin - 1), (frames, count, analogs), scale, processor)
         return C3dContent(parameters, rate, max(first - 1, 0), points)
     except (struct.error, IndexError) as error:
         raise ParameterError("the file is cut off within its head").tag("damaged") from error
-
-
-def _number(parameters: Mapping[tuple[str, str], Values], key: tuple[str, str], default: float) -> float:
-    """Finite number of a parameter; the default if it is missing or has another form."""
-    numbers = parameters.get(key, ())
-    return numbers[0] if len(numbers) == 1 and isinstance(numbers[0], float) and math.isfinite(numbers[0]) else default
 
 
 def _read_parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[str, str], Values]]:

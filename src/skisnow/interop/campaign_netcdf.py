@@ -21,7 +21,7 @@ from scipy.io import netcdf_file
 from .._support.arrays import IntArray
 from .._support.staging import write_file
 from ..campaign import Campaign
-from ..campaign.records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+from ..campaign.records import PenetrationTests, ShearTests
 
 CONVENTIONS: Final = "CF-1.11"
 MISSING: Final = 9.969209968386869e36
@@ -93,10 +93,20 @@ def _variables(campaign: Campaign) -> Iterator[_Variable]:
         yield from _penetration_variables(campaign.penetration)
     if campaign.shear is not None:
         yield from _shear_variables(campaign.shear)
-    if campaign.density is not None:
-        yield from _density_variables(campaign.density)
-    if campaign.drop_cone is not None:
-        yield from _drop_cone_variables(campaign.drop_cone)
+    if (samples := campaign.density) is not None:
+        of = "density_sample"
+        yield from _text_variables(of, name=samples.sample, site=samples.site, cancelled=samples.cancelled)
+        yield _Variable(f"{of}_snow_density", of, samples.snow_density, "kg m-3", "density of the snow")
+        yield _Variable(f"{of}_depth", of, samples.sample_depth, "m", "depth of the middle below the snow surface")
+        yield _Variable(f"{of}_thickness", of, samples.sample_thickness, "m", "vertical extent")
+        yield _Variable(f"{of}_row", of, samples.row, "1", "line of the file")
+        yield from _further(of, samples.further)
+    if (tests := campaign.drop_cone) is not None:
+        of = "drop_cone_repeat"
+        yield from _text_variables(of, test=tests.test, repeat=tests.repeat, site=tests.site, cancelled=tests.cancelled)
+        yield _Variable(f"{of}_depth", of, tests.drop_cone_depth, "m", "depth of the drop cone; larger is softer")
+        yield _Variable(f"{of}_row", of, tests.row, "1", "line of the file")
+        yield from _further(of, tests.further)
 
 
 def _penetration_variables(tests: PenetrationTests) -> Iterator[_Variable]:
@@ -140,26 +150,6 @@ def _shear_variables(tests: ShearTests) -> Iterator[_Variable]:
         yield _row_size_variable(of, reading, tests.turning.first)
         yield _Variable(f"{reading}_angle", reading, tests.turning.turning_angle, "rad", "turning angle of the device")
         yield _Variable(f"{reading}_moment", reading, tests.turning.moment, "N m", "moment on the pole")
-
-
-def _density_variables(samples: DensitySamples) -> Iterator[_Variable]:
-    """Variables of the density samples, in SI."""
-    of = "density_sample"
-    yield from _text_variables(of, name=samples.sample, site=samples.site, cancelled=samples.cancelled)
-    yield _Variable(f"{of}_snow_density", of, samples.snow_density, "kg m-3", "density of the snow")
-    yield _Variable(f"{of}_depth", of, samples.sample_depth, "m", "depth of the middle below the snow surface")
-    yield _Variable(f"{of}_thickness", of, samples.sample_thickness, "m", "vertical extent")
-    yield _Variable(f"{of}_row", of, samples.row, "1", "line of the file")
-    yield from _further(of, samples.further)
-
-
-def _drop_cone_variables(tests: DropConeTests) -> Iterator[_Variable]:
-    """Variables of the drop-cone tests, in SI."""
-    of = "drop_cone_repeat"
-    yield from _text_variables(of, test=tests.test, repeat=tests.repeat, site=tests.site, cancelled=tests.cancelled)
-    yield _Variable(f"{of}_depth", of, tests.drop_cone_depth, "m", "depth of the drop cone; larger is softer")
-    yield _Variable(f"{of}_row", of, tests.row, "1", "line of the file")
-    yield from _further(of, tests.further)
 
 
 def _text_variables(dimension: str, **columns: Sequence[str]) -> Iterator[_Variable]:

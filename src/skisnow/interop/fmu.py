@@ -229,7 +229,8 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
         for variable in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
     ]
     variables = (TIME, *_snow_parameters(setup.snow), *inputs, *outputs)
-    data = core.contact_data(setup.snow.compiled, contact.compiled, _start_values(variables))
+    starts = np.array([variable.start for variable in variables])
+    data = core.contact_data(setup.snow.compiled, contact.compiled, starts)
     about = (
         f"Snow on {'a rigid ski' if skis == 1 else 'two rigid skis'}: poses and motions at a step's beginning in, "
         f"forces and moments there out. {axes_of(scenario)}"
@@ -267,20 +268,15 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     speed = Variable("start.speed", "parameter", "m/s", "ahead, at the start", scenario.start.speed)
     variables = (TIME, speed, *inputs, *outputs)
     inertia = np.array([ski.inertia for ski in dynamics.body.skis])
+    starts = np.array([variable.start for variable in variables])
     data = core.sledge_data(
-        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, _start_values(variables),
-        len(moving),
-    )  # fmt: skip
+        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, starts, len(moving)
+    )
     about = f"A sledge on two flexible skis over snow. {axes_of(scenario)}"
     if moving:
         about += " Poses and motions of the boots at a step's end, in the sledge's axes, in."
     step = step if scenario.skier is None else scenario.skier.control_period
     return Model("skisnow sledge", about, variables, data, step, serializes=not moving)
-
-
-def _start_values(variables: tuple[Variable, ...]) -> FloatArray:
-    """Start value of each variable."""
-    return np.array([variable.start for variable in variables])
 
 
 def _require_builtin_laws(snow: SnowField) -> None:

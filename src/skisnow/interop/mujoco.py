@@ -162,23 +162,18 @@ class SnowForces:
             raise ParameterError("SnowForces: RK4 requires forces at times that are not accepted; use Euler").tag(
                 "not_supported"
             )
-        self._sites = [self._require_site_index(model, name) for name in sites]
+        self._sites = [int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)) for name in sites]
+        if -1 in self._sites:
+            known = ", ".join(model.site(i).name for i in range(model.nsite))
+            raise ParameterError("SnowForces: unknown site {name}; the sites are {known}").tag(
+                "unknown_name", name=sites[self._sites.index(-1)], known=known or "-"
+            )
         self.model, self.contact = model, contact
         self._fresh, self._accepted = contact.state(), None
         self.wrench: FloatArray = np.zeros((len(sites), 6))
         """Force (N) and moment (N m) of the snow about each site, in the world's axes, at the last call."""
 
     _accepted: float | None
-
-    def _require_site_index(self, model: Any, name: str) -> int:
-        """Index of a site in the model; rejects an unknown name."""
-        index = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
-        if index < 0:
-            names = ", ".join(model.site(i).name for i in range(model.nsite))
-            raise ParameterError("SnowForces: unknown site {name}; the sites are {known}").tag(
-                "unknown_name", name=name, known=names or "-"
-            )
-        return index
 
     def __call__(self, model: Any, data: Any) -> None:
         """Add the forces at the present pose to the passive ones; a pose at a new time enters the snow's history."""
@@ -190,21 +185,16 @@ class SnowForces:
         since = 0.0 if self._accepted is None else data.time - self._accepted
         position = data.site_xpos[self._sites].copy()
         rotation = data.site_xmat[self._sites].reshape(-1, 3, 3).copy()
-        self.wrench = self.contact.force(position, rotation, self._velocities(data), since).wrench
+        velocities = np.empty((len(self._sites), 6))
+        for site, velocity in zip(self._sites, velocities, strict=True):  # MuJoCo gives the angular velocity first
+            self._engine.mj_objectVelocity(model, data, self._engine.mjtObj.mjOBJ_SITE, site, velocity, 0)
+        self.wrench = self.contact.force(position, rotation, np.roll(velocities, 3, axis=1), since).wrench
         if self._accepted is None or since > 0.0:
             self.contact.update(position, rotation, since)
             self._accepted = float(data.time)
         for site, at, wrench in zip(self._sites, position, self.wrench, strict=True):
             body = model.site_bodyid[site]
             self._engine.mj_applyFT(model, data, wrench[:3], wrench[3:], at, body, data.qfrc_passive)
-
-    def _velocities(self, data: Any) -> FloatArray:
-        """Velocities of the sites and about them, in the world's axes; MuJoCo gives the angular one first."""
-        out, velocity = np.empty((len(self._sites), 6)), np.empty(6)
-        for k, site in enumerate(self._sites):
-            self._engine.mj_objectVelocity(self.model, data, self._engine.mjtObj.mjOBJ_SITE, site, velocity, 0)
-            out[k, :3], out[k, 3:] = velocity[3:], velocity[:3]
-        return out
 
     @contextmanager
     def installed(self) -> Iterator[SnowForces]:

@@ -45,6 +45,9 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     densities = tuple(_densities(campaign, site))
     profiles = tuple(_used_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
+    if not air and analysis.weather is not None:
+        station = (means["air_temperature_C"] for name, _, means in analysis.weather.site_means() if name == site)
+        air = [mean for mean in station if math.isfinite(mean)][:1]
     assumed = [_NO_DEPTH.format("Temperatures")] if temperatures else []
     assumed += [_NO_DEPTH.format("Densities")] if not all(layer.top or layer.thickness for layer in densities) else []
     assumed += [_NO_THICKNESS] if any(density.top and density.thickness is None for density in densities) else []
@@ -57,7 +60,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
         latitude_deg=None if first is None else first.latitude_deg,
         longitude_deg=None if first is None else first.longitude_deg,
         elevation=None if first is None else first.height,
-        air_temperature_C=math.fsum(air) / len(air) if air else _station_air(analysis, site),
+        air_temperature_C=math.fsum(air) / len(air) if air else None,
         densities=densities,
         temperatures=(DepthTemperature(0.0, math.fsum(temperatures) / len(temperatures)),) if temperatures else (),
         forces=tuple(_mean_forces(profile, evaluated) for profile, evaluated in profiles),
@@ -87,13 +90,6 @@ def _cells_of_site(campaign: Campaign, site: str, column: str) -> Iterator[str]:
         for name, cell in zip(sites, further.get(column, ()), strict=False):
             if name == site and cell:
                 yield cell
-
-
-def _station_air(analysis: Analysis, site: str) -> float | None:
-    """Mean air temperature (°C) of the weather station at the site's experiments; None if unknown."""
-    site_means = () if analysis.weather is None else analysis.weather.site_means()
-    mean = next((means["air_temperature_C"] for name, _, means in site_means if name == site), math.nan)
-    return mean if math.isfinite(mean) else None
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:

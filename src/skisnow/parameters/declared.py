@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from functools import cache
 from types import NoneType, UnionType
@@ -34,21 +34,17 @@ from .quantity import Allowed, Condition, Kind, Label, Quantity, Search
 T = TypeVar("T")
 
 
-def _nothing(_: Any) -> None:
-    """Default of `Word.word_of`: None, as no word describes the value of the field."""
-
-
 @dataclass(frozen=True, slots=True)
 class Word(Quantity):
     """Quantity whose value in a file is a text, such as a name, which the reader of the file interprets.
 
-    word_of: function from a value of the field to its text in a file.
+    word_of: function from a value of the field to its text in a file (default: no text describes the value).
     names_file: True if the text is the path of a file.
     """
 
     kind: Kind = "text"
     needed: bool = False
-    word_of: Callable[[Any], object] = _nothing
+    word_of: Callable[[Any], object] = lambda _: None
     names_file: bool = False
 
 
@@ -80,9 +76,17 @@ def own_quantities(owner: type) -> tuple[Quantity, ...]:
 
 def quantities(owner: type) -> tuple[Quantity, ...]:
     """The quantities of a dataclass and of its nested dataclasses, by section in the order of first occurrence."""
-    listed = list(_all_quantities(owner))
-    sections = list(dict.fromkeys(_section_name(quantity) for quantity in listed))
-    return tuple(sorted(listed, key=lambda quantity: sections.index(_section_name(quantity))))
+    listed: list[Quantity] = []
+    for slot in _slots_of(owner):
+        listed += slot.own
+        for quantity in (quantity for part in slot.parts for quantity in quantities(part)):
+            name = _full_key(slot.section.name, quantity.name)
+            needed = quantity.needed and not slot.section.otherwise
+            listed.append(replace(quantity, name=name, needed=needed))
+    by_section: dict[str, list[Quantity]] = {}
+    for quantity in listed:
+        by_section.setdefault(quantity.name.rpartition(".")[0], []).append(quantity)
+    return tuple(quantity for section in by_section.values() for quantity in section)
 
 
 def require_declared(thing: Any) -> None:
@@ -158,8 +162,9 @@ def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") 
         for quantity in slot.own:
             name = _full_key(section, quantity.name)
             if isinstance(quantity, Word) or name not in values:
-                if _loses_effect(quantity, values):
-                    parts[slot.field.name] = slot.field.default
+                condition = quantity.condition
+                if condition is not None and condition.key in values and not condition.holds(values[condition.key]):
+                    parts[slot.field.name] = slot.field.default  # any other value would have no effect
                 continue
             value = quantity.in_si(quantity.in_range(values[name]))
             if quantity.index is None:
@@ -173,12 +178,6 @@ def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") 
             if inside is not current:
                 parts[slot.field.name] = inside
     return replace(thing, **parts) if parts else thing  # type: ignore[type-var]
-
-
-def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
-    """True if new values include the key of a quantity's condition and violate it; False without a condition."""
-    condition = quantity.condition
-    return condition is not None and condition.key in values and not condition.holds(values[condition.key])
 
 
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
@@ -230,26 +229,9 @@ def _short_text(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _all_quantities(owner: type) -> Iterator[Quantity]:
-    """Quantities of a class with those of nested classes, by full names with their section."""
-    for slot in _slots_of(owner):
-        yield from slot.own
-        otherwise = slot.section.otherwise
-        for part in slot.parts:
-            for quantity in quantities(part):
-                yield replace(
-                    quantity, name=_full_key(slot.section.name, quantity.name), needed=quantity.needed and not otherwise
-                )
-
-
 def _full_key(section: str, name: str) -> str:
     """Name with its section; unchanged if there is no section or it already has one."""
     return f"{section}.{name}" if section and "." not in name else name
-
-
-def _section_name(quantity: Quantity) -> str:
-    """Section in a quantity's name; "" without one."""
-    return quantity.name.rpartition(".")[0]
 
 
 _SLOTS: dict[type, tuple[_Slot, ...]] = {}
@@ -268,7 +250,8 @@ def _make_slot(owner: type, field: Field[Any]) -> _Slot:
     if isinstance(hint, str):  # postponed; `get_type_hints` needs all names, also those imported for type checking only
         hint = eval(hint, dict(vars(sys.modules[owner.__module__])))
     marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
-    members = _union_members(get_args(hint)[0] if marks else hint)
+    plain = get_args(hint)[0] if marks else hint
+    members = get_args(plain) if get_origin(plain) in (Union, UnionType) else (plain,)
     section = next((mark for mark in marks if isinstance(mark, Section)), Section(""))
     declared = [mark for mark in marks if isinstance(mark, Quantity)]
     otherwise = any(isinstance(declaration, Word) for declaration in declared)
@@ -293,17 +276,6 @@ def _make_slot(owner: type, field: Field[Any]) -> _Slot:
     )
 
 
-def _fields_of_marks(marks: tuple[Any, ...]) -> dict[str, Any]:
-    """Fields of a `Quantity` by name from `Label`, `Allowed`, `Condition` and `Search` in its annotation."""
-    details: dict[str, Any] = {}
-    for mark in marks:
-        if isinstance(mark, Label | Allowed):
-            details |= mark._asdict()
-        elif isinstance(mark, Condition | Search):
-            details[type(mark).__name__.lower()] = mark
-    return details
-
-
 _KINDS: Final[dict[Any, Kind]] = {
     float: "number",
     int: "whole number",
@@ -314,11 +286,6 @@ _KINDS: Final[dict[Any, Kind]] = {
 }
 
 
-def _union_members(hint: Any) -> tuple[Any, ...]:
-    """Types of a union, or the hint itself in a tuple."""
-    return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
-
-
 def _completed_quantity(
     quantity: Quantity, marks: tuple[Any, ...], field: Field[Any], members: tuple[Any, ...], needed: bool
 ) -> Quantity:
@@ -327,13 +294,19 @@ def _completed_quantity(
     choices = get_args(type_) if get_origin(type_) is Literal else ()
     kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
     default = quantity.default
+    details: dict[str, Any] = {}
+    for mark in marks:
+        if isinstance(mark, Label | Allowed):
+            details |= mark._asdict()
+        elif isinstance(mark, Condition | Search):
+            details[type(mark).__name__.lower()] = mark
     resolved = replace(
         quantity,
         kind=kind,
         choices=choices,
         field=field.name,
         needed=quantity.needed and needed and default is None,
-        **_fields_of_marks(marks),
+        **details,
     )
     if default is None and field.default is not MISSING:
         return replace(resolved, default=resolved.in_unit(field.default))

@@ -23,13 +23,19 @@ def schema_of(quantity: Quantity) -> Schema:
     """
     words = quantity.described
     default = {} if quantity.default is None else {"default": quantity.default}
-    if quantity.kind == "three numbers":
-        items = {"type": "number", **_range_schema(quantity)}
-        return {"type": "array", "description": words, "minItems": 3, "maxItems": 3, "items": items}
-    if quantity.kind == "numbers":
-        least = {"minItems": 1} if quantity.default is None else {}
-        return {"type": "array", "description": words, **least, "items": {"type": "number", **_range_schema(quantity)}}
-    limits = _range_schema(quantity) if quantity.kind != "text" else _words_schema(quantity)
+    least = "exclusiveMinimum" if quantity.above else "minimum"
+    most = "exclusiveMaximum" if quantity.below else "maximum"
+    ends = {least: quantity.lowest, most: quantity.highest}
+    limits: Schema = {name: end for name, end in ends.items() if math.isfinite(end)}
+    if quantity.kind in ("numbers", "three numbers"):
+        count = {"minItems": 1} if quantity.default is None else {}
+        if quantity.kind == "three numbers":
+            count = {"minItems": 3, "maxItems": 3}
+        return {"type": "array", "description": words, **count, "items": {"type": "number", **limits}}
+    if quantity.choices:
+        limits = {"enum": list(quantity.choices)}
+    elif quantity.kind == "text":
+        limits = {} if quantity.blank else {"pattern": "\\S"}
     return {"type": _TYPES[quantity.kind], "description": words, **limits, **default}
 
 
@@ -64,18 +70,3 @@ def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -
 def schema_text(schema: Schema) -> str:
     """Text of a schema as JSON with indentation."""
     return json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
-
-
-def _range_schema(quantity: Quantity) -> Schema:
-    """JSON schema of a quantity's range, without ends that are infinite."""
-    least = "exclusiveMinimum" if quantity.above else "minimum"
-    most = "exclusiveMaximum" if quantity.below else "maximum"
-    ends = {least: quantity.lowest, most: quantity.highest}
-    return {name: end for name, end in ends.items() if math.isfinite(end)}
-
-
-def _words_schema(quantity: Quantity) -> Schema:
-    """JSON schema of a text: its choices, or a text that is not blank unless that is allowed."""
-    if quantity.choices:
-        return {"enum": list(quantity.choices)}
-    return {} if quantity.blank else {"pattern": "\\S"}

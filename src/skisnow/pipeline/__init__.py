@@ -30,7 +30,6 @@ from ..snow.mean_snow import drawn_snows, measured_intervals, no_used_experiment
 
 if TYPE_CHECKING:
     from .._support.processes.kept_rows import Row
-    from ..simulation.run import Run
 
 UNLOADING_RATIO: Final = 10.0
 """k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""
@@ -112,7 +111,13 @@ def turn(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/how-to/in-python.md.
     """
-    _require_inputs(unloading_ratio, shear_displacement, runs)
+    if unloading_ratio is not None and not unloading_ratio > ELASTIC:
+        raise ParameterError(
+            "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
+        ).tag("out_of_range", unloading_ratio=unloading_ratio)
+    if shear_displacement is not None:
+        require_range("shear_displacement", shear_displacement, 0.0, above=True)
+    require_range("runs", runs, FEWEST)
     workers = worker_count(workers)
     say = progress or (lambda *_: None)
     analysis = campaign if isinstance(campaign, Analysis) else _analyse_with_site_checked(campaign, site, progress)
@@ -130,7 +135,12 @@ def turn(
         Message("hypoplastic, k_u / H_V = {ratio:.3g}", ratio=snow.unloading_ratio): turn,
         Message("elastic"): turn.with_(unloading_ratio=ELASTIC),
     }
-    simulated = {name: _simulate_with_contact(name, contact, say) for name, contact in contacts.items()}
+    simulated: dict[str, Run] = {}
+    for name, contact in contacts.items():
+        say(f"the turn with the contact “{name}”")
+        simulated[name] = simulate(contact)
+        if simulated[name].outcome == "interrupted":
+            raise KeyboardInterrupt
     nominal = next(iter(simulated.values()))
     ensemble, moved, warnings = ensemble_of(nominal, drawn, every, workers=workers, progress=say)
     return TurnChain(
@@ -158,26 +168,6 @@ def _analyse_with_site_checked(
     if site is not None and pressed and site_of_campaign(read, site) not in pressed:
         raise no_used_experiment(read.name, site, sorted(pressed))
     return analyse(read, progress=progress)
-
-
-def _simulate_with_contact(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
-    """Run of a turn, announced by `say` with the contact's name; KeyboardInterrupt if it was interrupted."""
-    say(f"the turn with the contact “{contact}”")
-    run = simulate(turn)
-    if run.outcome == "interrupted":
-        raise KeyboardInterrupt
-    return run
-
-
-def _require_inputs(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
-    """Reject an unloading ratio of 1 or less, a displacement of 0 or less, or too few runs; None is allowed."""
-    if unloading_ratio is not None and not unloading_ratio > ELASTIC:
-        raise ParameterError(
-            "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
-        ).tag("out_of_range", unloading_ratio=unloading_ratio)
-    if shear_displacement is not None:
-        require_range("shear_displacement", shear_displacement, 0.0, above=True)
-    require_range("runs", runs, FEWEST)
 
 
 CAMBER_ROUNDING: Final = "ski.camber_rounding_mm"
@@ -273,30 +263,20 @@ def ensemble_of(
     """Runs of the ensemble, distance (m) by which the fast method moves the nominal run's end, and warnings of it."""
     nudged = {key: pair for key, pair in nudged_scenarios(nominal).items() if key in NUDGED}
     points = [nominal.scenario, *scenarios, *(scenario for nudges in nudged.values() for scenario in nudges)]
-
-    def tell(done: int, count: int) -> None:
-        progress(f"run {done} of {count}")
-
-    first, *rows = run_batch(points, simulate_fast, workers=workers, progress=tell)
+    first, *rows = run_batch(
+        points, simulate_fast, workers=workers, progress=lambda done, count: progress(f"run {done} of {count}")
+    )
     moved = _end_distance(first, [[column[-1]] for column in nominal.place[:, :2].T])
-    runs = [_ensemble_run(scenario, row, inputs) for scenario, row in zip(scenarios, rows, strict=False)]
+    runs = []
+    for scenario, row in zip(scenarios, rows, strict=False):
+        values, track = values_of(scenario), TimedTrack(*map(np.array, row["track"]))
+        drawn = {key: float(values[key]) for key in (*MEASURED, *(source.key for source in inputs))}
+        runs.append(EnsembleRun(scenario.contact.snow, row["outcome"], track, drawn, row["slips"]))
     beside = iter(rows[len(scenarios) :])
     moves = {
         key: max(_end_distance(next(beside), first["track"][1:]) for _ in nudges) for key, nudges in nudged.items()
     }
     return runs, moved, limit_sentences(moves, nominal.run_length)
-
-
-def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prior]) -> EnsembleRun:
-    """Run of the ensemble from its scenario and its computed row, with the values of the drawn inputs."""
-    values = values_of(scenario)
-    return EnsembleRun(
-        snow=scenario.contact.snow,
-        outcome=row["outcome"],
-        track=TimedTrack(*map(np.array, row["track"])),
-        values={key: float(values[key]) for key in (*MEASURED, *(source.key for source in inputs))},
-        slips=row["slips"],
-    )
 
 
 def _end_distance(row: Row, place: Sequence[Sequence[float]]) -> float:

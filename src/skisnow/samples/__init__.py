@@ -106,13 +106,6 @@ _FORCE_OF_COUNT_N: Final = 0.0025
 _HEADER_BYTES: Final = 512
 
 
-def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
-    """File name and content of the snow pit (CAAML), weather (SMET) and SnowMicroPen recording."""
-    yield "pit.caaml", caaml_text(sample_pit())
-    yield "weather.smet", weather_smet(random)
-    yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
-
-
 def sample_pit() -> SnowPit:
     """Pit of a groomed piste, with layers, densities and temperatures."""
     return SnowPit(
@@ -242,7 +235,9 @@ def _contents(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
     yield "course.gpx", course_waypoints()
     yield "cells.csv", photo_cell_times(random)
     yield from run_samples(random)
-    yield from snow_samples(random)
+    yield "pit.caaml", caaml_text(sample_pit())
+    yield "weather.smet", weather_smet(random)
+    yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
 
 
 SCENARIO: Final = "carved-46m"
@@ -272,7 +267,10 @@ def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
     mine = (files("skisnow.scenario") / "catalogue" / f"{SCENARIO}.toml").read_text("utf-8") + _MINE
     yield "mine.toml", mine
     yield "two-runs.toml", mine + _SECOND_RUN
-    yield "measured.csv", _track_csv(usual, random)
+    place = usual.place[::_EVERY] + _NOISE_M * random.standard_normal(usual.place[::_EVERY].shape)
+    rows = np.column_stack([usual.time[::_EVERY], place]).tolist()
+    lines = ["time_s,x_m,y_m,z_m", *(",".join(f"{value:.3f}" for value in row) for row in rows)]
+    yield "measured.csv", "\n".join([*lines, ""])
     yield "measured.gpx", _track_gpx(usual, random)
     yield "run-1.gpx", _track_gpx(usual, random)
     yield "run-2.gpx", _track_gpx(other, random)
@@ -281,13 +279,6 @@ def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
 def _simulate_sample(**changes: float) -> Run:
     """Fast run of the sample scenario with changes by key."""
     return simulate(load_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
-
-
-def _track_csv(run: Run, random: np.random.Generator) -> str:
-    """CSV text of a run's track in metres, thinned out and with drawn noise."""
-    place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)
-    rows = np.column_stack([run.time[::_EVERY], place])
-    return "\n".join(["time_s,x_m,y_m,z_m", *(",".join(f"{value:.3f}" for value in row) for row in rows.tolist()), ""])
 
 
 def _track_gpx(run: Run, random: np.random.Generator) -> str:

@@ -162,7 +162,7 @@ READERS = (
         name="upload.zip", target="0", files=_zipped, read=_uploaded, mutations=archive(_member),
         covers=(
             "web.uploads:Unpacking.take_zip", "web.uploads:_unpacked_pieces", "web.uploads:add_uploaded",
-            "campaign.store.folder:_read_description",
+            "campaign.store.folder:campaign_name",
         ),
     ),
     Reader(

@@ -187,11 +187,8 @@ def stated_tools(notes: Iterable[Note]) -> set[str]:
     tools: set[str] = set()
     for note in notes:
         for match in TOOL.finditer(note.text):
-            _, length, unit, width, width_unit = match.groups()
-            lengths = length_mm(length, unit or width_unit), length_mm(width, width_unit)
-            tools.add(
-                "" if lengths[0] <= lengths[1] or _is_unclear(note) else f"ski {lengths[0]:g} x {lengths[1]:g} mm"
-            )
+            length, width = length_mm(match[2], match[3] or match[5]), length_mm(match[4], match[5])
+            tools.add("" if length <= width or _is_unclear(note) else f"ski {length:g} x {width:g} mm")
         for match in DISC.finditer(note.text):
             tools.add("" if _is_unclear(note) else f"disc {length_mm(match[2], match[3]):g} mm")
     return tools

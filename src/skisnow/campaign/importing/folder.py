@@ -176,11 +176,9 @@ def described_tools(
                 described[sheet, name] = tool
             elif name in answers and parse(name, answers[name]) is None:
                 allowed = Message("lengths with a unit, such as {form}", form=form)
+                answer = {"column": kind, "value": answers[name]}
                 action = Message("Correct --{option}.", option=kind)
-                answer = answers[name]
-                dialogue.refuse(
-                    "bad_answer", table.section.key, column=kind, value=answer, allowed=allowed, action=action
-                )
+                dialogue.refuse("bad_answer", table.section.key, **answer, allowed=allowed, action=action)
             elif not dialogue.has_asked(kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
                 dialogue.ask(kind, name, table.section.key, value=value, proposed=form)

@@ -170,14 +170,13 @@ def _fill_down(
 
 def _is_excluded(section: Section, row: int, places: Sequence[int], dialogue: Dialogue) -> bool:
     """True if the user excludes rows like this one, hidden or struck through; adds a question without an answer."""
-    reasons = [
-        reason for reason, cells in section.sheet.excluded.items() if any((row, place) in cells for place in places)
-    ]
+    answers, excluded = dialogue.answers.cells, section.sheet.excluded
+    reasons = [reason for reason, cells in excluded.items() if any((row, place) in cells for place in places)]
     for reason in reasons:
-        if reason not in dialogue.answers.cells and not dialogue.has_asked("cells", reason):
+        if reason not in answers and not dialogue.has_asked("cells", reason):
             value = EXCLUDED[reason]
             dialogue.ask("cells", reason, section.key, row=row + 1, value=value, choices=("yes", "no"))
-    return any(dialogue.answers.cells.get(reason) == "no" for reason in reasons)
+    return any(answers.get(reason) == "no" for reason in reasons)
 
 
 def _refuse_split_numbers(

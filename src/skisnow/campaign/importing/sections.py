@@ -64,8 +64,8 @@ class Section:
             return True
         if not self.header <= row < self.end or column not in self.columns:
             return False
-        texts = sum(bool(self.sheet.cell(row, place)) for place in self.columns)
-        return row < self.start or texts > 1 or self.sheet.cell(row, self.columns[0]) == ""
+        texts = _filled(self.sheet, row, self.columns)
+        return row < self.start or len(texts) > 1 or self.columns[0] not in texts
 
 
 def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
@@ -90,9 +90,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str]) -> list[Section]:
         with_data = [
             part
             for part in on_row
-            if any(
-                sum(bool(sheet.cell(at, column)) for column in part.columns) > 1 for at in range(part.start, part.end)
-            )
+            if any(len(_filled(sheet, at, part.columns)) > 1 for at in range(part.start, part.end))
         ]
         sections += _split_series(with_data)
     return sections
@@ -233,7 +231,10 @@ def _make_section(
     if parts or rows_of_headings > 1 or (has_units and not any(map(is_plain_number, texts))):
         units, start = tuple(cell.strip("[]()").strip() for cell in below), start + 1
     end = min(later, default=len(sheet.rows))
-    while end > start and _is_title(sheet, end - 1, columns):
+    while end > start:
+        last = [text for text in _row_texts(sheet, end - 1, columns) if text]
+        if len(last) > 1 or any(map(is_plain_number, last)):
+            break  # a row of data; a blank row, and a title or note alone, belong to the next table
         end -= 1
     used = [
         place
@@ -247,12 +248,6 @@ def _make_section(
 def _is_empty(sheet: Sheet, column: int, rows: range) -> bool:
     """True if a column has no text in `rows`."""
     return not any(sheet.cell(row, column, filled=True) for row in rows)
-
-
-def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
-    """True for a row without numbers and with at most one text below the headings: blank, or a title or note."""
-    texts = [text for column in columns if (text := sheet.cell(row, column, filled=True))]
-    return not texts or (len(texts) == 1 and not is_plain_number(texts[0]))
 
 
 def _split_series(sections: Sequence[Section]) -> list[Section]:
@@ -330,7 +325,7 @@ def _with_titles(series: Sequence[Section]) -> list[Section]:
     return [replace(part, sheet=after) for part in named]
 
 
-def _filled(sheet: Sheet, row: int, columns: range) -> list[int]:
+def _filled(sheet: Sheet, row: int, columns: Sequence[int]) -> list[int]:
     """Columns with a text in the row."""
     return [column for column in columns if sheet.cell(row, column)]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass, field, fields
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -203,11 +204,9 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
         allowed = Message("a heading of a table")
         action = Message("Write the heading as the table has it, or remove the line.")
         # without an error these units would be ignored silently
+        refused = partial(error, "bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action)
         for path in raw.headings.without_heading({file: table.headings for file, table in raw.tables.items()}):
-            name = path.rpartition(".")[2]
-            raw.problems.append(
-                error("bad_toml", CAMPAIGN_FILE, column=path, value=name, allowed=allowed, action=action)
-            )
+            raw.problems.append(refused(column=path, value=path.rpartition(".")[2]))
     raw.recordings = recording_contents(raw.tables.get(SNOW_MICRO_PEN.file), raw)
     raw.weather = None if raw.described is None else campaign_weather(raw.described.weather, raw)
     names = campaign.names()
@@ -252,10 +251,7 @@ def read_description(files: RawFiles) -> CampaignFile | None:
 
 
 def _require_valid(raw: _RawCampaign) -> Campaign:
-    """Convert a campaign to records.
-
-    Raises FieldDataError: it has errors.
-    """
+    """Convert a campaign to records; FieldDataError if it has errors."""
     problems, described, tables = raw.sorted_problems(), raw.described, raw.tables
     if described is None or any(problem.severity == "error" for problem in problems):
         raise FieldDataError(problems)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
+from functools import partial
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -242,18 +243,10 @@ class DateCollector(TextCollector):
             return []
         line, cell, key = self._unread[0]
         more = f", and {len(self._unread) - 1} more like it" if len(self._unread) > 1 else ""
-        return [
-            warning(
-                "unreadable_date",
-                file,
-                row=line,
-                column=self._column,
-                experiment=key.strip() or None,
-                value=f"{cell}{more}",
-                allowed=Message("a day such as 2026-11-23 or 23.11.2026, with or without a time such as 09:10"),
-                action=Message("Write it so; no estimate needs it, but the report does not name this day."),
-            )
-        ]
+        dated = partial(warning, "unreadable_date", file, row=line, column=self._column, experiment=key.strip() or None)
+        allowed = Message("a day such as 2026-11-23 or 23.11.2026, with or without a time such as 09:10")
+        action = Message("Write it so; no estimate needs it, but the report does not name this day.")
+        return [dated(value=f"{cell}{more}", allowed=allowed, action=action)]
 
 
 def is_unloading_cell(cell: str) -> bool:

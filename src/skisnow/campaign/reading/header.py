@@ -7,6 +7,7 @@ import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 from ..._support.messages import Message, joined, template
@@ -162,20 +163,16 @@ def column_units(
         named = folded_unit(column) if heading == column else named_unit(heading)
         below = header.units[place] if header.units else ""
         stated = list(filter(None, (headings.unit(form, heading), named, below)))
-        if any(conversion(unit_given, column) != conversion(stated[0], column) for unit_given in stated):
-            allowed = Message("one unit among {units}", units=units_for(column))
+        units, size = units_for(column), conversion(stated[0], column) if stated else None
+        wrong_unit = partial(error, "other_unit", form.file, row=header.row, column=column, value=heading)
+        if any(conversion(unit, column) != size for unit in stated):
             action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
-            problems.append(_unit_error(form, heading, column, header.row, allowed, action))
-            continue
-        unit = stated[0] if stated else ""
-        size = conversion(unit, column) if unit else None
-        if not unit:
+            problems.append(wrong_unit(allowed=Message("one unit among {units}", units=units), action=action))
+        elif not stated:
             unstated |= {column: heading} if column in numbers else {}
         elif size is None or (size.changes and column not in numbers):
-            units = units_for(column)
             allowed = Message("numbers in {units}", units=units if column in numbers else units.split(", ", 1)[0])
-            action = Message("Correct the unit, or convert the numbers.")
-            problems.append(_unit_error(form, heading, column, header.row, allowed, action))
+            problems.append(wrong_unit(allowed=allowed, action=Message("Correct the unit, or convert the numbers.")))
         else:
             conversions[column] = size
             if size.changes:
@@ -185,8 +182,3 @@ def column_units(
                 note = warning("converted_unit", form.file, column=column, value=value, allowed=allowed, action=action)
                 problems.append(replace(note, needs_action=False))
     return conversions, unstated
-
-
-def _unit_error(form: TableForm, heading: str, column: str, row: int, allowed: Message, action: Message) -> Problem:
-    """Error for a heading with another unit than its column."""
-    return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)

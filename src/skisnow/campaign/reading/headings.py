@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final, TypeAlias
+from typing import Final
 
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message
@@ -68,10 +68,9 @@ def parse_headings(top: TomlValues) -> Headings:
     return Headings(_by_table(top.table(KEY), _name), _by_table(top.table(UNITS_KEY), _unit))
 
 
-Entry: TypeAlias = "Callable[[TomlValues, str, tuple[str, ...]], str]"
-
-
-def _by_table(section: TomlValues, entry: Entry) -> dict[str, dict[str, str]]:
+def _by_table(
+    section: TomlValues, entry: Callable[[TomlValues, str, tuple[str, ...]], str]
+) -> dict[str, dict[str, str]]:
     """Entries of a section by the file of a table, "" for all tables, and by plain heading.
 
     entry: reader of the value of a heading in a section, given the names of the columns; "" for an invalid one.

@@ -171,6 +171,12 @@ class LikelyColumn:
     if_high: str
     each_row: bool = True
 
+    def other_unit(self, median: float) -> str:
+        """Unit that numbers with this median look like, if it is not that of the column; "" within the range."""
+        if self.low <= median <= self.high:
+            return ""
+        return self.if_low if median < self.low else self.if_high
+
 
 LIKELY: Final = {
     "load_N": LikelyColumn(2.0, 20_000.0, "N", "kN", "mN or g"),
@@ -192,24 +198,24 @@ def _check_likely_units(table: Table) -> Iterator[Problem]:
         middle = _median(table, name)
         if middle is None:
             continue
-        unlikely = _unlikely_median(table, name)
-        if unlikely is not None and name not in table.unstated:
-            yield _warn_of_column(table, name, likely, *unlikely)
-        elif unlikely is None and likely.each_row:
+        unit = likely.other_unit(middle)
+        if unit and name not in table.unstated:
+            words = {"unit": likely.unit, "low": likely.low, "high": likely.high}
+            allowed = Message("numbers in {unit}; medians of {low:g} to {high:g} are usual", **words)
+            action = Message(
+                "If these are {unit} convert them to {unit_2}; if they are {unit_2} no action is needed.",
+                unit=unit,
+                unit_2=likely.unit,
+            )
+            value = f"a median of {middle:g}"
+            yield warning("unlikely_unit", table.form.file, column=name, value=value, allowed=allowed, action=action)
+        elif not unit and likely.each_row:
             values = table.numbers[name]
             above_zero = np.flatnonzero(values > 0)
             ratio = values[above_zero] / middle
             far = above_zero[(ratio > FAR) | (ratio < 1.0 / FAR)]
             if len(far):
                 yield _warn_of_rows(table, name, likely, middle, far.tolist())
-
-
-def _unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
-    """Median of a column's numbers above 0, and the unit they look like; None if it is in the range of `LIKELY`."""
-    middle, likely = _median(table, name), LIKELY[name]
-    if middle is None or likely.low <= middle <= likely.high:
-        return None
-    return middle, likely.if_low if middle < likely.low else likely.if_high
 
 
 def _median(table: Table, name: str) -> float | None:
@@ -219,34 +225,12 @@ def _median(table: Table, name: str) -> float | None:
     return float(np.median(above_zero)) if len(above_zero) else None
 
 
-def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
-    """Warning that a column's median suggests another unit than `likely`."""
-    allowed = Message(
-        "numbers in {unit}; medians of {low:g} to {high:g} are usual",
-        unit=likely.unit,
-        low=likely.low,
-        high=likely.high,
-    )
-    action = Message(
-        "If these are {unit} convert them to {unit_2}; if they are {unit_2} no action is needed.",
-        unit=unit,
-        unit_2=likely.unit,
-    )
-    return warning(
-        "unlikely_unit", table.form.file, column=name, value=f"a median of {middle:g}", allowed=allowed, action=action
-    )
-
-
 def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
     """Warning for the first of some rows that are far from the column's median, with the number of others."""
     value = table.numbers[name][rows[0]]
     more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
-    allowed = Message(
-        "numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}",
-        unit=likely.unit,
-        far=FAR,
-        middle=middle,
-    )
+    words = {"unit": likely.unit, "far": FAR, "middle": middle}
+    allowed = Message("numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}", **words)
     other = likely.if_low if value < middle else likely.if_high
     action = Message("Look whether this is {value} or a slip of the pen.", value=other)
     return table.warning(rows[0], "unlikely_unit", name, f"{value:g}{more}", allowed, action)
@@ -271,9 +255,8 @@ def _check_missing_units(table: Table, described: CampaignFile | None) -> Iterat
     if table.form == SHEAR and "lever_arm_mm" in table.unstated:
         yield from _lever_arms(table)
     for name in table.unstated:
-        unlikely = _unlikely_median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
-        if unlikely is not None:
-            middle, unit = unlikely
+        middle = _median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
+        if middle is not None and (unit := LIKELY[name].other_unit(middle)):
             yield _missing_unit(table, name, f"with a median of {middle:g}", unit.split(" or ", 1)[0])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Final
@@ -210,12 +210,10 @@ def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
     """Decimal mark of a CSV table, point or comma: that of its first numbers with a fraction."""
     number_columns = {column.name for column in form.numbers}
     positions = [index for index, name in enumerate(header.columns) if name in number_columns]
-
-    def groups() -> Iterator[list[str]]:
-        for _, rows in text.records():
-            yield [cells[index] for cells in rows for index in positions if index < len(cells)]
-
     try:
-        return decimal_mark(groups(), separator=text.separator)
+        numbers = (
+            [cells[index] for cells in rows for index in positions if index < len(cells)] for _, rows in text.records()
+        )
+        return decimal_mark(numbers, separator=text.separator)
     except UnreadableTextError:
         return "."  # what is unreadable is reported where the records are read

@@ -145,12 +145,8 @@ class TomlValues:
                 continue
             near = difflib.get_close_matches(key.lower(), keys, n=1, cutoff=_SIMILAR)
             if near:
-                self.refuse(
-                    key,
-                    Message("the key {near}", near=near[0]),
-                    Message("Did you mean {similar}? Correct or remove the key.", similar=near[0]),
-                    value=key,
-                )
+                action = Message("Did you mean {similar}? Correct or remove the key.", similar=near[0])
+                self.refuse(key, Message("the key {near}", near=near[0]), action, value=key)
             else:
                 allowed = Message("the keys {allowed_keys}", allowed_keys=list(keys))
                 action = Message("The key is not used; no action is needed.")

@@ -78,10 +78,8 @@ def unfold_workbooks(files: CampaignFiles) -> UnfoldedFiles:
             action = Message(
                 "It looks like {table}: call the sheet so if it is. Otherwise no action is needed.", table=form.name
             )
-            allowed, sheet = (
-                Message("sheets called {names}", names=[*DESCRIBING, *FORMS]),
-                place.rpartition(", sheet ")[2],
-            )
+            allowed = Message("sheets called {names}", names=[*DESCRIBING, *FORMS])
+            sheet = place.rpartition(", sheet ")[2]
             workbooks.problems.append(warning("unread_sheet", place, value=sheet, allowed=allowed, action=action))
     return workbooks
 
@@ -96,7 +94,10 @@ def is_workbook(name: str) -> bool:
 
 
 def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
-    """Unfold a workbook's sheets into the campaign's files; an unreadable workbook becomes a problem."""
+    """Turn a workbook's sheets into campaign.toml and tables; other sheets stay unread.
+
+    An unreadable workbook, and a second sheet of a table, become problems.
+    """
     try:
         data = workbooks.files.read(workbook)
         if data is None:
@@ -105,21 +106,13 @@ def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
         sheets = workbook_sheets(data, wanted=lambda _: True)
     except (ContentError, OSError) as failure:
         what = failure.strerror or str(failure) if isinstance(failure, OSError) else str(failure)
-        value, _, action = what.partition(". ")
+        value, _, advice = what.partition(". ")
+        action = advice or "Save it again, or as CSV."
         allowed = Message("a workbook (.xlsx) with a sheet for each table")
-        workbooks.problems.append(
-            error(
-                "unreadable_file", workbook, value=value, allowed=allowed, action=action or "Save it again, or as CSV."
-            )
-        )
+        workbooks.problems.append(error("unreadable_file", workbook, value=value, allowed=allowed, action=action))
         return
-    _assign_sheets(workbooks, workbook, {name: rows for name, rows in sheets.items() if rows})
-
-
-def _assign_sheets(workbooks: UnfoldedFiles, workbook: str, sheets: Mapping[str, Rows]) -> None:
-    """Turn sheets into campaign.toml and tables; a second sheet of a table is a problem, others stay unread."""
     describing: dict[str, Rows] = {}
-    for title, rows in sheets.items():
+    for title, rows in ((title, rows) for title, rows in sheets.items() if rows):
         kind = _kind(title)
         place = f"{workbook}, sheet {title}"
         if kind in DESCRIBING:

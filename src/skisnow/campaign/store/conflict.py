@@ -139,7 +139,10 @@ def open_conflicts(here: Connection, there: Connection, journal_id: str) -> Iter
     """Conflicts of a journal: tests about which entries of only one store contradict those of only the other."""
     of_here, of_there = entry_index(here, journal_id), entry_index(there, journal_id)
     for subject in of_here.written_on_both(of_there):
-        on_here, on_there = (_entries_about(store, journal_id, subject) for store in (here, there))
+        on_here, on_there = (
+            entries_by_uid(store, journal_id, (uid for uid, about in index.subject.items() if about == subject))
+            for store, index in ((here, of_here), (there, of_there))
+        )
         uids_here, uids_there = {entry.uid for entry in on_here}, {entry.uid for entry in on_there}
         conflict = Conflict(
             journal_id,
@@ -174,18 +177,14 @@ def _entry_words(entry: JournalEntry, about: JournalEntry | None) -> str:
     if entry.action == "undo":
         return f"took back: {_entry_words(about, None)}" if about is not None else "took an entry back"
     if entry.action == "correct":
-        return "corrected " + ", ".join(_correction_words(key, text, about) for key, text in entry.cells.items())
+        row = f"row {about.position + 1}, " if about is not None and about.position is not None else ""
+        corrected = []
+        for key, text in entry.cells.items():  # a cell of a stored file, or a column of the row that is corrected
+            place = "line {}, {}".format(*cell_of(key)) if "/" in key else f"{row}{key}"
+            corrected.append(f"{place} to {text!r}")
+        return f"corrected {', '.join(corrected)}"
     cells = ", ".join(f"{column} {text}" for column, text in entry.cells.items() if text and text != entry.test)
     return f"added row {(entry.position or 0) + 1}: {_shorten_text(cells)}"
-
-
-def _correction_words(key: str, text: str, about: JournalEntry | None) -> str:
-    """Correction of a cell in words, with its line in the file (stored campaign) or its row in the test (in entry)."""
-    if "/" in key:
-        line, column = cell_of(key)
-        return f"line {line}, {column} to {text!r}"
-    row = f"row {about.position + 1}, " if about is not None and about.position is not None else ""
-    return f"{row}{key} to {text!r}"
 
 
 def _shorten_text(text: str) -> str:
@@ -218,10 +217,7 @@ class EntryIndex:
 
 
 def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
-    """Index of the entries of a journal in a store; empty if it does not have the journal.
-
-    Raises StoreError: an entry has no uid.
-    """
+    """Index of the entries of a journal in a store, empty without the journal; StoreError if an entry has no uid."""
     columns, index = journal_entry.c, EntryIndex()
     query = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)
     for uid, sequence, file, test in connection.execute(query):
@@ -240,14 +236,6 @@ def entries_by_uid(connection: Connection, journal_id: str, uids: Iterable[str])
         query = select(journal_entry).where(journal_entry.c.journal_id == journal_id, some)
         entries += [parse_entry(row) for row in connection.execute(query).mappings()]
     return sorted(entries, key=lambda entry: entry.uid)
-
-
-def _entries_about(connection: Connection, journal_id: str, subject: Subject) -> list[JournalEntry]:
-    """All entries about one test, sorted by uid. Raises StoreError: an entry is damaged."""
-    columns = journal_entry.c
-    of_subject = (columns.journal_id == journal_id, columns.file == subject[0], columns.test == subject[1])
-    rows = connection.execute(select(journal_entry).where(*of_subject)).mappings()
-    return sorted((parse_entry(row) for row in rows), key=lambda entry: entry.uid)
 
 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:

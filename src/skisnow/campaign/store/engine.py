@@ -170,13 +170,7 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
         is_outdated = _is_outdated(engine, path)
     if is_outdated:
         _bring_up_to_date(engine, path, busy_timeout_s)
-    _require_tables(engine, path)
-    return engine
-
-
-def _require_tables(engine: Engine, path: Path) -> None:
-    """Check that all tables of the schema exist with all columns."""
-    with reading(engine) as connection:
+    with reading(engine) as connection:  # all tables must exist, with all columns
         database: Any = connection.connection.driver_connection
         try:
             require_schema(database, {name: table.columns.keys() for name, table in metadata.tables.items()})
@@ -186,6 +180,7 @@ def _require_tables(engine: Engine, path: Path) -> None:
             raise StoreError("{path} is damaged: {error}. Put a backup in its place.").tag(
                 "damaged", path=path, error=error
             ) from error
+    return engine
 
 
 def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:

@@ -105,20 +105,16 @@ def read_chunks(file: Path, chunk_bytes: int) -> Iterator[bytes]:
 def campaign_name(folder: Path) -> str:
     """Name from a folder's campaign.toml or its sheets if they can be read, otherwise that of the folder."""
     own = folder.resolve().name.encode(errors="replace").decode()
+    place = folder / DESCRIPTION
     try:
-        name = toml_values(decode(_read_description(folder)).text).get("name")
+        if place.exists():
+            data = plain_bytes(place, most_bytes=MOST_TOML_BYTES)
+        else:
+            data = unfold_workbooks(CampaignFiles(folder)).read(DESCRIPTION) or b""
+        name = toml_values(decode(data).text).get("name")
     except (OSError, ParameterError, UnreadableTextError):
         return own
-    words = " ".join(name.split()) if isinstance(name, str) else ""
-    return words or own
-
-
-def _read_description(folder: Path) -> bytes:
-    """Bytes of campaign.toml, which may also be sheets of a workbook; empty if there is none."""
-    place = folder / DESCRIPTION
-    if place.exists():
-        return plain_bytes(place, most_bytes=MOST_TOML_BYTES)
-    return unfold_workbooks(CampaignFiles(folder)).read(DESCRIPTION) or b""
+    return (" ".join(name.split()) if isinstance(name, str) else "") or own
 
 
 def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
@@ -214,10 +210,7 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
 
 
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
-    """Join pieces to the bytes of a file, and verify their SHA-256.
-
-    Raises StoreError: bytes that do not have the stored SHA-256.
-    """
+    """Join pieces to the bytes of a file; StoreError if they do not have its SHA-256."""
     data = b"".join(pieces)
     if hashlib.sha256(data).hexdigest() != file.sha256:
         raise StoreError("{path} is damaged in the store and was not read; `skisnow store verify` lists all.").tag(

@@ -70,10 +70,7 @@ class JournalEntry(NewEntry):
 
 
 def parse_entry(row: RowMapping) -> JournalEntry:
-    """Convert a row to an entry and verify its checksum.
-
-    Raises StoreError: the row is damaged.
-    """
+    """Convert a row to an entry and verify its checksum; StoreError if the row is damaged."""
     entry = readable_entry(row)
     if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
         raise entry_damage_error(row["sequence"], row["journal_id"])

@@ -194,7 +194,12 @@ def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
         columns = _table_columns(form, tests)
         if STATUS not in columns and any(test.cancelling for test in tests):
             columns.append(STATUS)
-        rows = [_row_cells(reading.entered.at, cells, columns) for test in tests for reading, cells in _readings(test)]
+        rows = []
+        for test in tests:
+            reason = {} if test.cancelling is None else {STATUS: test.cancelled}  # in the first row of the test
+            for reading in test.rows:
+                rows.append(_row_cells(reading.entered.at, reading.cells | reason, columns))
+                reason = {}
         tables[form.file] = Cells(tuple(columns), range(2, len(rows) + 2), rows)
         corrections.extend(_applied_corrections(tests))
     return campaign_of_cells(campaign.description, tables, tuple(corrections))
@@ -207,13 +212,6 @@ def _tests_by_table(tests: Iterable[ReplayedTest]) -> Iterator[tuple[TableForm, 
         if test.rows:
             by_file.setdefault(test.file, []).append(test)
     yield from ((form, by_file[form.file]) for form in TABLES if form.file in by_file)
-
-
-def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]:
-    """Readings of a test with their current cells; if it was cancelled, the first contains the reason."""
-    for index, reading in enumerate(test.rows):
-        cancelled = index == 0 and test.cancelling is not None
-        yield reading, reading.cells | {STATUS: test.cancelled} if cancelled else reading.cells
 
 
 def _table_columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:

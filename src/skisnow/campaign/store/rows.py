@@ -110,19 +110,13 @@ def entry_damage_error(number: object, journal_id: object) -> StoreError:
 
 
 def require_whole(stored: StoredCampaign) -> None:
-    """Check that a campaign's list of files is unchanged since it was added; the stored bytes are not read.
-
-    Raises StoreError: a path, a size or a hash differs, or a file is missing.
-    """
+    """Raise a StoreError if a campaign's list of files changed since it was added; the stored bytes are not read."""
     if manifest_sha256(stored.files) != stored.sha256:
         raise damage_error(Message("The list of files of the campaign {id}", id=stored.id))
 
 
 def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
-    """Convert a row to a campaign, with the list of its files.
-
-    Raises StoreError: the row or that list is damaged.
-    """
+    """Convert a row to a campaign, with the list of its files; StoreError if the row or that list is damaged."""
     try:
         rows = connection.execute(
             select(campaign_file.c.path, content.c.size, content.c.sha256)
@@ -176,10 +170,7 @@ def is_sound(connection: Connection, sha256: str, size: int) -> bool:
 
 
 def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
-    """Store the bytes of a file unless they are stored already; True if stored but damaged bytes were replaced.
-
-    Raises StoreError: the file changed since it was hashed.
-    """
+    """Store the bytes of a file unless stored; True if damaged bytes were replaced; StoreError if the file changed."""
     stored_size = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).scalar_one_or_none()
     if stored_size is None:
         connection.execute(insert(content).values(sha256=file.sha256, size=file.size))
@@ -203,10 +194,7 @@ def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[byte
 
 
 def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
-    """Remove a campaign, and the bytes of its files that no other campaign has.
-
-    Raises StoreError: the campaign has corrections.
-    """
+    """Remove a campaign, and the bytes that only its files have; StoreError if the campaign has corrections."""
     if connection.execute(select(journal_entry.c.sequence).where(journal_entry.c.journal_id == stored.id)).first():
         raise StoreError("The campaign {id} has corrections and was not removed. Export it instead.").tag(
             "has_corrections", id=stored.id

@@ -88,11 +88,7 @@ def reason(error: BaseException, address: ServerAddress) -> str:
 
 
 def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Connect to the database and bring its tables up to date.
-
-    Raises StoreError: psycopg is not installed; the database contains no store, a store of a newer program, or other
-        tables.
-    """
+    """Connect to the database and bring its tables up to date; StoreError without psycopg or a store that it reads."""
     engine = _engine(address, busy_timeout_s)
     try:
         with engine.connect() as connection:
@@ -187,10 +183,7 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
 
 
 def needs_migration(revision: str | None, place: object) -> bool:
-    """True if a store with that revision needs a migration.
-
-    Raises StoreError: this program does not know the migration.
-    """
+    """True if a store with that revision needs a migration; StoreError if this program does not know it."""
     if revision == REVISION:
         return False  # the usual case: alembic need not even be imported
     from .migrations import is_known

@@ -207,10 +207,7 @@ def _name(connection: Connection, id_: str) -> str:
 
 
 def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iterable[str]) -> dict[str, int]:
-    """Copy entries of a journal, and the journal if it is missing; return their sequences by uid.
-
-    Raises StoreError: an entry is damaged, or refers to a missing one.
-    """
+    """Copy entries, and a missing journal; return sequences by uid. StoreError: one is damaged or lacks its subject."""
     entries = entries_by_uid(source, journal_id, uids)
     if to.execute(select(journal.c.id).where(journal.c.id == journal_id)).first() is None:
         begun_at = source.execute(select(journal.c.begun_at).where(journal.c.id == journal_id)).scalar_one()
@@ -234,10 +231,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
 
 
 def settle(here: Connection, there: Connection, conflict: Conflict, side: Side, who: str) -> None:
-    """Copy the other store's entries of a conflict to this one (`here`), and write entries that apply the choice.
-
-    Raises StoreError: both cannot be kept.
-    """
+    """Copy the other store's entries of a conflict to `here` and write the choice; StoreError if both cannot be kept."""
     if side not in conflict.choices:
         raise StoreError("The conflict {id} cannot be settled by keeping {side}: {choices}.").tag(
             "unknown_side", id=conflict.id, side=side, choices=list(conflict.choices)

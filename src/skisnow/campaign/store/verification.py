@@ -62,7 +62,12 @@ def _content_damage(connection: Connection, progress: Progress) -> Iterator[Find
     rows = connection.execute(select(content.c.sha256, content.c.size)).all()
     done, total = 0, sum(size for _, size in rows if isinstance(size, int))
     for sha256, size in rows:
-        if not isinstance(size, int) or not _is_sound(connection, sha256, size):
+        try:
+            with savepoint(connection):
+                sound = isinstance(sha256, str) and isinstance(size, int) and is_sound(connection, sha256, size)
+        except (DatabaseError, UnicodeDecodeError):  # the pages with these bytes are broken; other files may be whole
+            sound = False
+        if not sound:
             users = select(campaign_file.c.campaign_id, campaign_file.c.path).where(campaign_file.c.sha256 == sha256)
             message = f"the bytes no longer have the SHA-256 {sha256}; add the original folder again to repair it"
             named = connection.execute(users).all() if isinstance(sha256, str) else []
@@ -70,15 +75,6 @@ def _content_damage(connection: Connection, progress: Progress) -> Iterator[Find
             yield from (Finding(*place, message) for place in places or [(None, None)])
         done += size if isinstance(size, int) else 0
         progress(done, total)
-
-
-def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
-    """True if stored bytes have this SHA-256 and size; False also if they cannot be read."""
-    try:
-        with savepoint(connection):
-            return isinstance(sha256, str) and is_sound(connection, sha256, size)
-    except (DatabaseError, UnicodeDecodeError):  # the pages that hold it are broken; other files may be whole
-        return False
 
 
 def _text_or_repr(value: object) -> str | None:
