@@ -14,16 +14,8 @@ from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.messages import Message, template
 from .._support.units import MM
 from ..geometry import GeometryForm, in_form
-from .problems import (
-    CREEP_SHARE,
-    CREEP_STEPS,
-    FEWEST_LOADS,
-    NEED_HARDNESS,
-    QUALITY_FLAGS,
-    RESOLUTIONS,
-    Problem,
-    with_sheet_name,
-)
+from . import problems
+from .problems import QUALITY_FLAGS, Problem, with_sheet_name
 from .reading.table_forms import PENETRATION, SHEAR
 from .records import Campaign, PenetrationTests
 
@@ -39,7 +31,7 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
     """
     tests = campaign.penetration
     if tests is None:
-        return {code: np.zeros(0, dtype=np.bool_) for code in QUALITY_FLAGS if code not in NEED_HARDNESS}
+        return {code: np.zeros(0, dtype=np.bool_) for code in QUALITY_FLAGS if code not in problems.NEED_HARDNESS}
     series = tests.series_of_reading
     unloaded = np.zeros(0, dtype=np.int64) if tests.unloading is None else tests.unloading.series_of_reading
     masks = {}
@@ -59,7 +51,7 @@ def _bad_readings(campaign: Campaign, tests: PenetrationTests, geometry: Geometr
     limit = maximum_depths(campaign, tests, geometry) * (1 + _ROUNDING)
     return {
         "cancelled": begins & _is_filled(tests.cancelled)[series],
-        "too_few_loads": begins & (np.diff(tests.first) < FEWEST_LOADS)[series],
+        "too_few_loads": begins & (np.diff(tests.first) < problems.FEWEST_LOADS)[series],
         "loads_not_rising": ~begins & (np.diff(tests.load, prepend=0.0) <= 0),
         "depth_shrinks": ~begins & (np.diff(depth, prepend=0.0) < 0),
         "zero_depth": largest & (depth == 0),
@@ -90,7 +82,7 @@ def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArr
     """True for each depth (m) below the smallest usable one; all False if the resolution is None."""
     if resolution is None:
         return np.zeros(len(depth), dtype=np.bool_)
-    return depth < RESOLUTIONS * resolution * (1 - _ROUNDING)
+    return depth < problems.RESOLUTIONS * resolution * (1 - _ROUNDING)
 
 
 def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
@@ -116,8 +108,8 @@ def _creeping_readings(campaign: Campaign, tests: PenetrationTests) -> BoolArray
     """True for readings whose depth grew under constant load by more than `CREEP_STEPS` and `CREEP_SHARE` allow."""
     if tests.depth_after is None:
         return np.zeros(len(tests.load), dtype=np.bool_)
-    step = CREEP_STEPS * (campaign.gauge_resolution or 0.0)
-    limit = np.maximum(step, CREEP_SHARE * tests.penetration_depth) * (1 + _ROUNDING)
+    step = problems.CREEP_STEPS * (campaign.gauge_resolution or 0.0)
+    limit = np.maximum(step, problems.CREEP_SHARE * tests.penetration_depth) * (1 + _ROUNDING)
     return np.asarray(np.nan_to_num(tests.depth_after - tests.penetration_depth) > limit)
 
 
@@ -184,14 +176,14 @@ def flag_problems(
     geometry: form of the ski piece in the screening.
     Returns: problems of penetration before shear, in the order of the file, then of `QUALITY_FLAGS`.
     """
-    problems: list[Problem] = []
+    flags: list[Problem] = []
     if campaign.penetration is not None:
-        problems += _penetration_problems(campaign, campaign.penetration, masks_penetration, geometry)
+        flags += _penetration_problems(campaign, campaign.penetration, masks_penetration, geometry)
     if (tests := campaign.shear) is not None:
         for index, code in _flagged_experiments(masks_shear):
             value = tests.cancelled[index] if code == "cancelled" else _number(tests.penetration_depth[index] / MM)
-            problems.append(_flag(campaign, code, SHEAR.file, int(tests.row[index]), tests.experiment[index], value))
-    return [with_sheet_name(problem, campaign.places) for problem in problems]
+            flags.append(_flag(campaign, code, SHEAR.file, int(tests.row[index]), tests.experiment[index], value))
+    return [with_sheet_name(flag, campaign.places) for flag in flags]
 
 
 def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
@@ -251,11 +243,11 @@ def _flag(
     )
     allowed = Message(
         _ALLOWED[code],
-        fewest_loads=FEWEST_LOADS,
-        resolutions=RESOLUTIONS,
-        smallest_depth=RESOLUTIONS * (campaign.gauge_resolution or 0.0) / MM,
-        creep_steps=CREEP_STEPS,
-        creep_share=CREEP_SHARE,
+        fewest_loads=problems.FEWEST_LOADS,
+        resolutions=problems.RESOLUTIONS,
+        smallest_depth=problems.RESOLUTIONS * (campaign.gauge_resolution or 0.0) / MM,
+        creep_steps=problems.CREEP_STEPS,
+        creep_share=problems.CREEP_SHARE,
         **fields,
     )
     column = _COLUMNS.get(code, "depth_mm")

@@ -9,21 +9,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from ..._support.messages import Message
+from ..reading import headings
 from ..reading.columns import iso_moment
 from ..reading.header import NO_UNIT
-from ..reading.headings import (
-    SYNONYMS,
-    UnitConversion,
-    columns_by_synonym,
-    conversion,
-    folded_unit,
-    known_unit,
-    letters,
-    named_unit,
-    stated_column,
-    unit_of_column,
-    units_for,
-)
 from ..reading.table_forms import TableForm
 from .answers import NONE, Dialogue
 from .sections import Section
@@ -43,7 +31,7 @@ class ColumnChoice:
     place: int
     heading: str
     column: str
-    unit: UnitConversion | None = None
+    unit: headings.UnitConversion | None = None
 
 
 def number_columns(form: TableForm) -> list[str]:
@@ -59,7 +47,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     stated = []
     for heading in section.headings:
         answer = dialogue.answers.of_heading("column", form.name, heading)
-        stated.append(answer if answer in form.known or answer == NONE else stated_column(form, heading))
+        stated.append(answer if answer in form.known or answer == NONE else headings.stated_column(form, heading))
         if answer and answer != NONE and answer not in form.known:
             allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
             action = Message("Correct --{option}.", option="column")
@@ -71,9 +59,9 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
         unit = None
         if column in numbers:
             unit = _choose_unit(section, form, heading, column, below, dialogue, notes)
-        elif column in form.further and unit_of_column(column):
+        elif column in form.further and headings.unit_of_column(column):
             units = _stated_units(form, heading, column, below, dialogue, notes)
-            column = column if units == {folded_unit(column)} else heading  # noqa: PLW2901
+            column = column if units == {headings.folded_unit(column)} else heading  # noqa: PLW2901
         choices.append(ColumnChoice(place, heading, "" if column == NONE else column or heading, unit))
     return choices
 
@@ -91,7 +79,7 @@ def _ask_for_columns(section: Section, form: TableForm, stated: Sequence[str], d
     missing = [name for name in form.required if name not in times and name not in FROM_NOTES]
     free = [heading for heading, column in zip(section.headings, stated, strict=True) if not column]
     only = dict(zip(free, missing, strict=True)) if len(free) == len(missing) == 1 else {}
-    likely = only | columns_by_synonym(form, free)
+    likely = only | headings.columns_by_synonym(form, free)
     for heading in free if missing else ():
         key, proposed = f"{form.name}.{heading}", likely.get(heading, NONE)
         choices = (*missing, *(name for name in form.known if name not in missing), NONE)
@@ -108,29 +96,29 @@ def _stated_units(
     form: TableForm, heading: str, column: str, below: str, dialogue: Dialogue, notes: Sequence[Note]
 ) -> set[str]:
     """All units that are stated for a column: by answer, heading, row of units (`below`) and notes."""
-    answer = known_unit(dialogue.answers.of_heading("unit", form.name, heading))
-    named = folded_unit(column) if heading == column else named_unit(heading)
+    answer = headings.known_unit(dialogue.answers.of_heading("unit", form.name, heading))
+    named = headings.folded_unit(column) if heading == column else headings.named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
-    return {*filter(None, (answer, named, known_unit(below))), *of_notes}
+    return {*filter(None, (answer, named, headings.known_unit(below))), *of_notes}
 
 
 def _choose_unit(
     section: Section, form: TableForm, heading: str, column: str, below: str, dialogue: Dialogue, notes: Sequence[Note]
-) -> UnitConversion | None:
+) -> headings.UnitConversion | None:
     """Conversion to a column's unit; None, with an error or a question added, unless exactly one unit is stated."""
     units = _stated_units(form, heading, column, below, dialogue, notes)
-    sizes = {conversion(unit, column) for unit in units}
-    is_unknown = not known_unit(below) and below.casefold() not in NO_UNIT and below != heading
+    sizes = {headings.conversion(unit, column) for unit in units}
+    is_unknown = not headings.known_unit(below) and below.casefold() not in NO_UNIT and below != heading
     is_clear = not is_unknown or dialogue.answers.of_heading("unit", form.name, heading)
     if len(sizes) == 1 and None not in sizes and is_clear:
         return sizes.pop()
     if sizes:
         value = ", ".join(sorted(units | ({below} if is_unknown else set())))
-        allowed = Message("one unit among {units}", units=units_for(column))
+        allowed = Message("one unit among {units}", units=headings.units_for(column))
         action = Message("Correct the heading, the row of units, the note or --unit: they state different units.")
         dialogue.refuse("other_unit", section.key, column=heading, value=value, allowed=allowed, action=action)
     else:
-        choices = tuple(units_for(column).split(", "))
+        choices = tuple(headings.units_for(column).split(", "))
         dialogue.ask("unit", f"{form.name}.{heading}", section.key, value=below or heading, choices=choices)
     return None
 
@@ -177,7 +165,7 @@ def length_mm(number: str, unit: str) -> float:
     >>> length_mm("6,2", "cm")
     62.0
     """
-    size = conversion(unit.casefold(), "depth_mm")
+    size = headings.conversion(unit.casefold(), "depth_mm")
     assert size is not None
     return float(f"{float(number.replace(',', '.')) * size.factor:.10g}")
 
@@ -237,17 +225,17 @@ def stated_observers(notes: Iterable[Note]) -> list[str]:
 
 def units_in_notes(column: str, notes: Iterable[Note]) -> set[str]:
     """Units that notes state for a column, such as "Last in kg"."""
-    words = "|".join(re.escape(word) for word in SYNONYMS[column] if len(word) > 2)
+    words = "|".join(re.escape(word) for word in headings.SYNONYMS[column] if len(word) > 2)
     pattern = re.compile(rf"\b(?:{words})(?:en|e|n|s)?\s*(?:in|:|=|\[|\()\s*([^\s\]),;.]+)", re.IGNORECASE)
     texts = [note.text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue") for note in notes]
-    units = {known_unit(match[1]) for text in texts for match in pattern.finditer(text)}
-    return {unit for unit in units if unit and conversion(unit, column)}
+    units = {headings.known_unit(match[1]) for text in texts for match in pattern.finditer(text)}
+    return {unit for unit in units if unit and headings.conversion(unit, column)}
 
 
 def is_about_numbers(note: Note) -> bool:
     """True for a note that may change the measurements: it has a load or moment, or a column's name with a number."""
-    words = letters(note.text).split()
-    synonyms = {word for column in MEASURED for word in SYNONYMS[column] if len(word) > 2}
+    words = headings.letters(note.text).split()
+    synonyms = {word for column in MEASURED for word in headings.SYNONYMS[column] if len(word) > 2}
     named = any(
         word in synonyms or any(word == f"{synonym}{end}" for synonym in synonyms for end in ("e", "en", "n", "s"))
         for word in words

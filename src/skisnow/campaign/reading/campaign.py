@@ -16,16 +16,9 @@ from ..problems import AppliedCorrection, Problem, error, with_sheet_name
 from ..records import Campaign
 from ..smet import CampaignWeather
 from ..snow_micro_pen import SnowMicroPenRecordings
+from . import campaign_files
 from .campaign_file import CAMPAIGN_FILE, CampaignFile, Description, read_campaign_file
-from .campaign_files import (
-    ENDING,
-    WEATHER_ENDING,
-    CampaignFiles,
-    FilesInMemory,
-    RawFiles,
-    campaign_weather,
-    recording_contents,
-)
+from .campaign_files import CampaignFiles, FilesInMemory, RawFiles
 from .columns import Table
 from .corrections import corrections_by_file
 from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests, single_rows
@@ -46,7 +39,11 @@ class _ReadFiles(Container[str]):
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or "/" in name:
             return False
-        return name in CAMPAIGN_FILES or name.lower().endswith((ENDING, WEATHER_ENDING)) or is_workbook(name)
+        return (
+            name in CAMPAIGN_FILES
+            or name.lower().endswith((campaign_files.ENDING, campaign_files.WEATHER_ENDING))
+            or is_workbook(name)
+        )
 
 
 READ_FILES: Final = _ReadFiles()
@@ -193,9 +190,9 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _RawCa
     return _read_all(CampaignFiles(folder), progress)
 
 
-def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _RawCampaign:
+def _read_all(files: CampaignFiles, progress: Callable[[str], None] | None) -> _RawCampaign:
     """Read all files of a campaign: tables with corrections applied, recordings, weather, and all problems."""
-    campaign = unfold_workbooks(campaign_files)
+    campaign = unfold_workbooks(files)
     raw = _RawCampaign(campaign, campaign.problems, places=campaign.places)
     raw.described = read_description(raw)
     for form in TABLES:
@@ -207,8 +204,8 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
         refused = partial(error, "bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action)
         for path in raw.headings.without_heading({file: table.headings for file, table in raw.tables.items()}):
             raw.problems.append(refused(column=path, value=path.rpartition(".")[2]))
-    raw.recordings = recording_contents(raw.tables.get(SNOW_MICRO_PEN.file), raw)
-    raw.weather = None if raw.described is None else campaign_weather(raw.described.weather, raw)
+    raw.recordings = campaign_files.recording_contents(raw.tables.get(SNOW_MICRO_PEN.file), raw)
+    raw.weather = None if raw.described is None else campaign_files.campaign_weather(raw.described.weather, raw)
     names = campaign.names()
     for name in sorted(names):  # a file whose name differs by case would not be read
         if name not in CAMPAIGN_FILES and name.lower() in raw.absent:

@@ -12,17 +12,7 @@ from typing import Final
 
 from ..._support.messages import Message, joined, template
 from ..problems import Problem, error, warning
-from .headings import (
-    Headings,
-    UnitConversion,
-    columns_by_synonym,
-    conversion,
-    folded_unit,
-    known_unit,
-    named_unit,
-    unit_of_column,
-    units_for,
-)
+from . import headings
 from .table_forms import TableForm
 
 _MOST_TITLES = 20
@@ -71,7 +61,7 @@ def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
     (('', '°', 'kg', 'mm', ''), ())
     """
     plain = [cell.strip().strip("[]()").strip() for cell in cells]
-    units = tuple(map(known_unit, plain))
+    units = tuple(map(headings.known_unit, plain))
     others = {cell.casefold() for cell, unit in zip(plain, units, strict=True) if not unit}
     return units if sum(map(bool, units)) >= _FEWEST_UNITS and others <= NO_UNIT else ()
 
@@ -90,7 +80,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
         for name in repeated
     ]
     as_written = {heading.lower(): heading for heading in unknown}
-    likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
+    likely = {column: heading for heading, column in headings.columns_by_synonym(form, unknown).items()}
     for name in missing:
         near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
         meant = as_written[near[0]] if near else likely.get(name)
@@ -116,7 +106,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
 
 def _missing_columns_error(form: TableForm, header: Header) -> Problem:
     """Error for a table without any required column; it proposes a mapping of the headings in campaign.toml."""
-    meant = columns_by_synonym(form, header.columns)
+    meant = headings.columns_by_synonym(form, header.columns)
     left = [name for name in form.required if name not in meant.values()]
     pairs = ", ".join(
         f"{json.dumps(heading, ensure_ascii=False)} = {json.dumps(name)}" for heading, name in meant.items()
@@ -134,7 +124,7 @@ def _missing_columns_error(form: TableForm, header: Header) -> Problem:
 
 def _advise_mapping(heading: str, column: str) -> Message:
     """Advice to rename a heading as `column` or map it; warns of the unit if the column has one."""
-    if not unit_of_column(column):
+    if not headings.unit_of_column(column):
         advice = template("Did you mean {column!r}? Rename {heading!r}, or map it under [columns] in campaign.toml.")
     else:
         advice = template(
@@ -145,27 +135,27 @@ def _advise_mapping(heading: str, column: str) -> Message:
 
 
 def column_units(
-    form: TableForm, header: Header, headings: Headings, problems: list[Problem]
-) -> tuple[dict[str, UnitConversion], dict[str, str]]:
+    form: TableForm, header: Header, mapping: headings.Headings, problems: list[Problem]
+) -> tuple[dict[str, headings.UnitConversion], dict[str, str]]:
     """Resolve the units of a table; a column's own name such as load_N states its unit.
 
-    form, header, headings: form of the table, its header in the file, and the mapping of headings in campaign.toml.
+    form, header, mapping: form of the table, its header in the file, and the mapping of headings in campaign.toml.
     problems: list to which problems are added: a wrong unit, two units for one heading, a note on each conversion.
     Returns the conversion of each column whose unit is stated, and the headings without a unit by their columns.
     """
     numbers = {column.name for column in form.numbers} - set(form.further)
-    conversions: dict[str, UnitConversion] = {}
+    conversions: dict[str, headings.UnitConversion] = {}
     unstated: dict[str, str] = {}
     for place, heading in enumerate(header.columns):
-        column = headings.name(form, heading)
-        if not unit_of_column(column):
+        column = mapping.name(form, heading)
+        if not headings.unit_of_column(column):
             continue
-        named = folded_unit(column) if heading == column else named_unit(heading)
+        named = headings.folded_unit(column) if heading == column else headings.named_unit(heading)
         below = header.units[place] if header.units else ""
-        stated = list(filter(None, (headings.unit(form, heading), named, below)))
-        units, size = units_for(column), conversion(stated[0], column) if stated else None
+        stated = list(filter(None, (mapping.unit(form, heading), named, below)))
+        units, size = headings.units_for(column), headings.conversion(stated[0], column) if stated else None
         wrong_unit = partial(error, "other_unit", form.file, row=header.row, column=column, value=heading)
-        if any(conversion(unit, column) != size for unit in stated):
+        if any(headings.conversion(unit, column) != size for unit in stated):
             action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
             problems.append(wrong_unit(allowed=Message("one unit among {units}", units=units), action=action))
         elif not stated:

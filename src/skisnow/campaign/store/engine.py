@@ -18,18 +18,9 @@ from typing import Any, Final
 from sqlalchemy import Connection, Engine, ExceptionContext, NullPool, create_engine, event
 from sqlalchemy.exc import DBAPIError
 
+from ..._support import sqlite_file
 from ..._support.errors import StoreError
 from ..._support.messages import Message, template
-from ..._support.sqlite_file import (
-    NO_ROOM,
-    READ_ONLY,
-    Mode,
-    connect,
-    first_damage,
-    place_reason,
-    primary_code,
-    require_schema,
-)
 from .schema import APPLICATION_ID, metadata
 from .server import ServerAddress, StorePlace, lock_for_writing, needs_migration, open_server, reason
 
@@ -38,9 +29,9 @@ _NO_STORE: Final = Message("this file is not a store; name another file")
 _NOT_ALLOWED: Final = Message("access is not allowed; change the permissions or name another place")
 _NO_TEXT: Final = "Could not decode to UTF-8"
 _SYSTEM_REASONS: Final = {
-    errno.ENOSPC: NO_ROOM,
-    errno.EDQUOT: NO_ROOM,
-    errno.EROFS: READ_ONLY,
+    errno.ENOSPC: sqlite_file.NO_ROOM,
+    errno.EDQUOT: sqlite_file.NO_ROOM,
+    errno.EROFS: sqlite_file.READ_ONLY,
     errno.EACCES: _NOT_ALLOWED,
     errno.EPERM: _NOT_ALLOWED,
 }
@@ -75,19 +66,19 @@ def database_errors(store: StorePlace, code: str) -> Iterator[None]:
 
 def _file_reason(error: BaseException, path: Path) -> str:
     """Reason why a store in a file cannot be used, with a remedy."""
-    message, code = str(error), primary_code(error)
+    message, code = str(error), sqlite_file.primary_code(error)
     if code == sqlite3.SQLITE_NOTADB:
         return _NO_STORE
     if code == sqlite3.SQLITE_CORRUPT or message.startswith(_NO_TEXT):
         damage = _find_damage(path)
         return Message("{reason} ({damage})", reason=_DAMAGED, damage=damage) if damage else _DAMAGED
-    return place_reason(error) or message
+    return sqlite_file.place_reason(error) or message
 
 
 def _find_damage(path: Path) -> str | None:
     """First damage of a store's file; None without one, and also if SQLite cannot read the file."""
-    with suppress(sqlite3.Error), closing(connect(path, mode="ro")) as database:
-        return first_damage(database)
+    with suppress(sqlite3.Error), closing(sqlite_file.connect(path, mode="ro")) as database:
+        return sqlite_file.first_damage(database)
     return None
 
 
@@ -163,7 +154,7 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
         # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
         # is writing, and SQLite can read the file as immutable.
         log = path.with_name(path.name + "-wal")
-        forbidden = primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
+        forbidden = sqlite_file.primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
             raise
         engine = _engine(path, "ro&immutable=1", busy_timeout_s)
@@ -173,9 +164,11 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     with reading(engine) as connection:  # all tables must exist, with all columns
         database: Any = connection.connection.driver_connection
         try:
-            require_schema(database, {name: table.columns.keys() for name, table in metadata.tables.items()})
+            sqlite_file.require_schema(
+                database, {name: table.columns.keys() for name, table in metadata.tables.items()}
+            )
         except sqlite3.DatabaseError as error:
-            if place_reason(error) is not None:
+            if sqlite_file.place_reason(error) is not None:
                 raise
             raise StoreError("{path} is damaged: {error}. Put a backup in its place.").tag(
                 "damaged", path=path, error=error
@@ -183,11 +176,11 @@ def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     return engine
 
 
-def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
+def _engine(path: Path, mode: sqlite_file.Mode, busy_timeout_s: float) -> Engine:
     """SQLAlchemy engine whose connections use foreign keys, full synchronisation and skisnow's own BEGIN."""
 
     def open_file() -> sqlite3.Connection:
-        connection = connect(path, mode=mode, timeout_s=busy_timeout_s)
+        connection = sqlite_file.connect(path, mode=mode, timeout_s=busy_timeout_s)
         try:
             connection.execute("PRAGMA foreign_keys = ON")
             connection.execute("PRAGMA synchronous = FULL")
@@ -255,6 +248,6 @@ def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:
                 connection.connection.cursor().execute("PRAGMA journal_mode = WAL")
             return
         except sqlite3.OperationalError as error:
-            if primary_code(error) != sqlite3.SQLITE_BUSY or time.monotonic() > give_up:
+            if sqlite_file.primary_code(error) != sqlite3.SQLITE_BUSY or time.monotonic() > give_up:
                 raise
         time.sleep(0.01)

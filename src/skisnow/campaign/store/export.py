@@ -19,20 +19,12 @@ from ..problems import AppliedCorrection
 from ..reading.campaign import ATTACHMENTS
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
+from . import replayed
 from .engine import database_errors, file_errors, reading
 from .folder import Progress, StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
 from .journal_entry import JournalEntry, NewEntry
-from .replayed import (
-    COLUMNS,
-    ReplayedCampaign,
-    ReplayedTest,
-    campaign_files,
-    correction_cells,
-    correction_of_cell,
-    guarded_csv,
-    replay_journal,
-)
+from .replayed import ReplayedCampaign, ReplayedTest, replay_journal
 from .rows import StoredCampaign, campaign_rows, pick_id
 from .store import Store
 from .stored_tables import cell_of
@@ -146,7 +138,7 @@ def with_rows(before: bytes, file: str, columns: Sequence[str], rows: Iterable[M
     header = [cell.strip() for cell in records.pop(0)] if records else []
     header += [column for column in columns if column not in header]
     came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
-    return guarded_csv([header, *came, *([cells.get(column, "") for column in header] for cells in rows)])
+    return replayed.guarded_csv([header, *came, *([cells.get(column, "") for column in header] for cells in rows)])
 
 
 def _parse_records(data: bytes, file: str) -> list[list[str]]:
@@ -162,7 +154,7 @@ def _parse_records(data: bytes, file: str) -> list[list[str]]:
 
 def exported_files(campaign: ReplayedCampaign) -> dict[str, bytes]:
     """Bytes of all files of a campaign in entry by path: description, tables, corrections, photos and positions."""
-    files = {name: text.encode("utf-8") for name, text in campaign_files(campaign).items()}
+    files = {name: text.encode("utf-8") for name, text in replayed.campaign_files(campaign).items()}
     return files | dict(attachment_files(campaign))
 
 
@@ -210,10 +202,10 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
 
     Raises StoreError: the corrections.csv of the campaign cannot be read.
     """
-    cells = [dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in _corrections(entries)]
+    cells = [dict(zip(replayed.COLUMNS, replayed.correction_cells(row), strict=True)) for row in _corrections(entries)]
     if not cells:
         return dict(files)
-    text = with_rows(files.get(CORRECTIONS.file, b""), CORRECTIONS.file, COLUMNS, cells)
+    text = with_rows(files.get(CORRECTIONS.file, b""), CORRECTIONS.file, replayed.COLUMNS, cells)
     return {**files, CORRECTIONS.file: text.encode("utf-8")}
 
 
@@ -230,7 +222,7 @@ def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]
             cells = entry.cells if entry.action == "correct" else {f"{first}/{STATUS}": entry.why}
             for key, new in cells.items():
                 line, column = cell_of(key)
-                yield correction_of_cell(entry, line, column, cells_now.get(key, ""), new)
+                yield replayed.correction_of_cell(entry, line, column, cells_now.get(key, ""), new)
                 cells_now[key] = new
 
 

@@ -10,20 +10,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from sqlalchemy import (
-    BigInteger,
-    CheckConstraint,
-    Column,
-    ForeignKey,
-    ForeignKeyConstraint,
-    Index,
-    Integer,
-    LargeBinary,
-    MetaData,
-    String,
-    Table,
-    Text,
-)
+import sqlalchemy as sa
 
 REVISION: Final = "0005"
 """Newest migration; tests compare it with the migrations themselves."""
@@ -36,7 +23,7 @@ MARK: Final = "campaigns of a store of skisnow"
 
 CHUNK_BYTES: Final = 1 << 20
 
-metadata = MetaData(
+metadata = sa.MetaData(
     naming_convention={
         "ix": "ix_%(table_name)s_%(column_0_N_name)s",
         "uq": "uq_%(table_name)s_%(column_0_N_name)s",
@@ -46,75 +33,78 @@ metadata = MetaData(
     }
 )
 
-campaign = Table(
+campaign = sa.Table(
     "campaign",
     metadata,
-    Column("id", String(12), primary_key=True),
-    Column("sha256", String(64), nullable=False, unique=True),
-    Column("name", Text, nullable=False),
-    Column("added_at", String(20), nullable=False),
-    Column("n_errors", Integer),
-    Column("n_warnings", Integer),
-    CheckConstraint("id = substr(sha256, 1, 12)", name="id_from_sha256"),
-    CheckConstraint("(n_errors IS NULL) = (n_warnings IS NULL)", name="both_counts_or_none"),
+    sa.Column("id", sa.String(12), primary_key=True),
+    sa.Column("sha256", sa.String(64), nullable=False, unique=True),
+    sa.Column("name", sa.Text, nullable=False),
+    sa.Column("added_at", sa.String(20), nullable=False),
+    sa.Column("n_errors", sa.Integer),
+    sa.Column("n_warnings", sa.Integer),
+    sa.CheckConstraint("id = substr(sha256, 1, 12)", name="id_from_sha256"),
+    sa.CheckConstraint("(n_errors IS NULL) = (n_warnings IS NULL)", name="both_counts_or_none"),
     comment=MARK,
 )
 """``added_at``: UTC, ISO 8601. Counts are NULL where the campaign could not be checked."""
 
-content = Table(
+content = sa.Table(
     "content",
     metadata,
-    Column("sha256", String(64), primary_key=True),
-    Column("size", BigInteger().with_variant(Integer, "sqlite"), nullable=False),
-    CheckConstraint("size >= 0", name="size_not_negative"),
+    sa.Column("sha256", sa.String(64), primary_key=True),
+    sa.Column("size", sa.BigInteger().with_variant(sa.Integer, "sqlite"), nullable=False),
+    sa.CheckConstraint("size >= 0", name="size_not_negative"),
 )
 
-chunk = Table(
+chunk = sa.Table(
     "chunk",
     metadata,
-    Column("sha256", String(64), nullable=False, primary_key=True),
-    Column("position", Integer, nullable=False, primary_key=True),
-    Column("data", LargeBinary, nullable=False),
-    ForeignKeyConstraint(["sha256"], ["content.sha256"], ondelete="CASCADE"),
+    sa.Column("sha256", sa.String(64), nullable=False, primary_key=True),
+    sa.Column("position", sa.Integer, nullable=False, primary_key=True),
+    sa.Column("data", sa.LargeBinary, nullable=False),
+    sa.ForeignKeyConstraint(["sha256"], ["content.sha256"], ondelete="CASCADE"),
 )
 """``position`` counts a content's chunks from 0; an empty file has no chunk."""
 
-campaign_file = Table(
+campaign_file = sa.Table(
     "campaign_file",
     metadata,
-    Column("campaign_id", String(12), ForeignKey("campaign.id", ondelete="CASCADE"), primary_key=True),
-    Column("path", Text, primary_key=True),
-    Column("sha256", String(64), ForeignKey("content.sha256"), nullable=False, index=True),
+    sa.Column("campaign_id", sa.String(12), sa.ForeignKey("campaign.id", ondelete="CASCADE"), primary_key=True),
+    sa.Column("path", sa.Text, primary_key=True),
+    sa.Column("sha256", sa.String(64), sa.ForeignKey("content.sha256"), nullable=False, index=True),
 )
 """``path``: relative to the campaign's folder, parts joined by ``/``."""
 
-journal = Table(
-    "journal", metadata, Column("id", String(12), primary_key=True), Column("begun_at", String(20), nullable=False)
+journal = sa.Table(
+    "journal",
+    metadata,
+    sa.Column("id", sa.String(12), primary_key=True),
+    sa.Column("begun_at", sa.String(20), nullable=False),
 )
 """A campaign that is still being entered. Its state is replayed from its entries alone (event sourcing)."""
 
-journal_entry = Table(
+journal_entry = sa.Table(
     "journal_entry",
     metadata,
-    Column("sequence", Integer, primary_key=True),
-    Column("journal_id", String(12), ForeignKey("journal.id", ondelete="CASCADE"), nullable=False),
-    Column("at", String(20), nullable=False),
-    Column("who", Text, nullable=False),
-    Column("action", String(8), nullable=False),
-    Column("file", Text, nullable=False),
-    Column("test", Text, nullable=False),
-    Column("position", Integer),
-    Column("about", Integer, ForeignKey("journal_entry.sequence")),
-    Column("cells", Text, nullable=False),
-    Column("why", Text, nullable=False),
-    Column("once", Text),
-    Column("sha256", String(64)),
-    Column("uid", String(31)),
-    CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
-    CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
-    Index(None, "journal_id", "file", "test"),
-    Index(None, "journal_id", "once", unique=True),
-    Index(None, "uid", unique=True),
+    sa.Column("sequence", sa.Integer, primary_key=True),
+    sa.Column("journal_id", sa.String(12), sa.ForeignKey("journal.id", ondelete="CASCADE"), nullable=False),
+    sa.Column("at", sa.String(20), nullable=False),
+    sa.Column("who", sa.Text, nullable=False),
+    sa.Column("action", sa.String(8), nullable=False),
+    sa.Column("file", sa.Text, nullable=False),
+    sa.Column("test", sa.Text, nullable=False),
+    sa.Column("position", sa.Integer),
+    sa.Column("about", sa.Integer, sa.ForeignKey("journal_entry.sequence")),
+    sa.Column("cells", sa.Text, nullable=False),
+    sa.Column("why", sa.Text, nullable=False),
+    sa.Column("once", sa.Text),
+    sa.Column("sha256", sa.String(64)),
+    sa.Column("uid", sa.String(31)),
+    sa.CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
+    sa.CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
+    sa.Index(None, "journal_id", "file", "test"),
+    sa.Index(None, "journal_id", "once", unique=True),
+    sa.Index(None, "uid", unique=True),
 )
 """Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts;
 ``once``: what tells an entry that is sent again from a new one; ``sha256``: of all that the entry says; ``uid``: what

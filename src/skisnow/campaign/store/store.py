@@ -17,6 +17,7 @@ from sqlalchemy import Engine
 
 from ..._support.errors import StoreError
 from ..._support.units import Facts, Shown
+from . import rows
 from .engine import database_errors, file_errors, open_engine, reading, writing
 from .folder import (
     FileState,
@@ -32,19 +33,7 @@ from .folder import (
     read_chunks,
     write_file,
 )
-from .rows import (
-    ID_DIGITS,
-    StoredCampaign,
-    campaign_rows,
-    one_campaign,
-    refuse_changed,
-    remove_campaign,
-    require_whole,
-    store_campaign,
-    store_content,
-    stored_campaign,
-    stored_chunks,
-)
+from .rows import StoredCampaign
 from .schema import CHUNK_BYTES
 from .server import ServerAddress, StorePlace, store_place
 from .verification import Finding, findings
@@ -139,16 +128,16 @@ class Store(Shown):
             (n_errors, n_warnings), failure = _check(folder)
             sha256 = manifest_sha256(files)
             campaign = StoredCampaign(
-                sha256[:ID_DIGITS], campaign_name(folder), datetime.now(UTC), sha256, n_errors, n_warnings, files
+                sha256[: rows.ID_DIGITS], campaign_name(folder), datetime.now(UTC), sha256, n_errors, n_warnings, files
             )
             with database_errors(self.path, "not_stored"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
                 for file in files:
-                    n_repaired += store_content(connection, folder, file)
+                    n_repaired += rows.store_content(connection, folder, file)
                     done += file.size
                     progress(done, 2 * n_bytes)
-                is_new = store_campaign(connection, campaign)
-                refuse_changed(changed_files(before, list_files(folder)))
+                is_new = rows.store_campaign(connection, campaign)
+                rows.refuse_changed(changed_files(before, list_files(folder)))
         fields = {field: getattr(campaign, field) for field in StoredCampaign.__slots__}
         return AddedCampaign(**fields, already_stored=not is_new, n_repaired=n_repaired, check_failure=failure)
 
@@ -177,14 +166,14 @@ class Store(Shown):
         Raises StoreError: as in `show`; or the campaign has corrections.
         """
         with database_errors(self.path, "not_written"), writing(self.engine) as connection:
-            stored = one_campaign(connection, id)
-            remove_campaign(connection, stored)
+            stored = rows.one_campaign(connection, id)
+            rows.remove_campaign(connection, stored)
         return stored
 
     def list(self) -> tuple[StoredCampaign, ...]:
         """All campaigns, oldest first."""
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
-            return tuple(stored_campaign(connection, row) for row in campaign_rows(connection).values())
+            return tuple(rows.stored_campaign(connection, row) for row in rows.campaign_rows(connection).values())
 
     def show(self, id: str) -> StoredCampaign:
         """One campaign by its id or the beginning of it (at least 4 digits).
@@ -192,7 +181,7 @@ class Store(Shown):
         Raises StoreError: the id is unknown or ambiguous; the message lists candidates.
         """
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
-            return one_campaign(connection, id)
+            return rows.one_campaign(connection, id)
 
     def export(
         self,
@@ -212,11 +201,11 @@ class Store(Shown):
         """
         out, done = Path(out_folder), 0
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
-            stored = one_campaign(connection, id)
-            require_whole(stored)
+            stored = rows.one_campaign(connection, id)
+            rows.require_whole(stored)
             with file_errors(out, "not_written"), new_folder(out) as filling:
                 for file in stored.files:
-                    write_file(filling, file, stored_chunks(connection, file.sha256))
+                    write_file(filling, file, rows.stored_chunks(connection, file.sha256))
                     done += file.size
                     progress(done, stored.n_bytes)
                 if complete is not None:
@@ -229,10 +218,12 @@ class Store(Shown):
         Raises StoreError: as in `show`; a file is damaged.
         """
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
-            stored = one_campaign(connection, id)
-            require_whole(stored)
+            stored = rows.one_campaign(connection, id)
+            rows.require_whole(stored)
             chosen = [file for file in stored.files if file.path in names]
-            return stored, {file.path: checked_bytes(file, stored_chunks(connection, file.sha256)) for file in chosen}
+            return stored, {
+                file.path: checked_bytes(file, rows.stored_chunks(connection, file.sha256)) for file in chosen
+            }
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Search for damage: checks of the database, hashes of all files, ids of all campaigns; () without damage."""
@@ -259,7 +250,7 @@ def _hashed_files(
             size += len(piece)
             progress(done + size)
         if size != expected_size:
-            refuse_changed([path])
+            rows.refuse_changed([path])
         files.append(StoredFile(path, size, digest.hexdigest()))
         done += size
     return tuple(files)

@@ -16,21 +16,12 @@ from sqlalchemy import Connection, insert, select
 
 from ..._support.errors import StoreError
 from ..._support.messages import Message
+from . import rows
 from .conflict import Conflict, Side, entries_by_uid, entry_index, open_conflicts, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
 from .journal import entered_name
 from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
-from .rows import (
-    ID_DIGITS,
-    campaign_rows,
-    copy_content,
-    damage_error,
-    require_whole,
-    store_campaign,
-    stored_campaign,
-    stored_chunks,
-)
 from .schema import campaign, journal, journal_entry
 from .store import Store
 from .stored_tables import FORMS
@@ -108,20 +99,20 @@ class _Sync:
     def _copy_campaigns(self, source: Store, to: Store) -> int:
         """Copy missing campaigns with their files; returns their number and records damaged ones as problems."""
         with reading(to.engine) as connection:
-            held = campaign_rows(connection)
+            held = rows.campaign_rows(connection)
         n_taken = 0
         with reading(source.engine) as from_:
-            missing = {sha256: row for sha256, row in campaign_rows(from_).items() if sha256 not in held}
+            missing = {sha256: row for sha256, row in rows.campaign_rows(from_).items() if sha256 not in held}
             for _, row in sorted(missing.items()):
                 try:
-                    stored = stored_campaign(from_, row)
-                    require_whole(stored)
+                    stored = rows.stored_campaign(from_, row)
+                    rows.require_whole(stored)
                     with writing(to.engine) as connection:
                         for file in stored.files:
-                            if not copy_content(connection, file, stored_chunks(from_, file.sha256)):
-                                names = {"path": file.path, "id": stored.sha256[:ID_DIGITS]}
-                                raise damage_error(Message("{path} of the campaign {id}", **names))
-                        store_campaign(connection, stored)
+                            if not rows.copy_content(connection, file, rows.stored_chunks(from_, file.sha256)):
+                                names = {"path": file.path, "id": stored.sha256[: rows.ID_DIGITS]}
+                                raise rows.damage_error(Message("{path} of the campaign {id}", **names))
+                        rows.store_campaign(connection, stored)
                     n_taken += 1
                 except StoreError as error:
                     self._problems.append(f"{source.path}: {error}")
@@ -220,7 +211,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
         number = max(next_, number_of_uid(entry.uid))
         about = None if entry.about is None else numbers.get(of_source.get(entry.about, ""))
         if entry.about is not None and about is None:
-            raise damage_error(
+            raise rows.damage_error(
                 Message("The subject of entry {number} of the campaign {id}", number=entry.sequence, id=journal_id)
             )
         once = None if entry.once in sent else entry.once
@@ -231,7 +222,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
 
 
 def settle(here: Connection, there: Connection, conflict: Conflict, side: Side, who: str) -> None:
-    """Copy the other store's entries of a conflict to `here` and write the choice; StoreError if both cannot be kept."""
+    """Copy the other store's entries of a conflict to `here` and apply the choice; StoreError if that is impossible."""
     if side not in conflict.choices:
         raise StoreError("The conflict {id} cannot be settled by keeping {side}: {choices}.").tag(
             "unknown_side", id=conflict.id, side=side, choices=list(conflict.choices)
