@@ -68,6 +68,15 @@ def read_caaml(path: str | Path) -> SnowPit:
     return _Profile(path.name, root).pit()
 
 
+_OBSERVER_PATHS: Final = (
+    ("Person", "name"),
+    ("Operation", "contactPerson", "name"),
+    ("Operation", "contactPerson", "Person", "name"),
+    ("Operation", "name"),
+)
+"""Elements with the name of the observing person or organisation, below the source of the observation."""
+
+
 class _Profile:
     """Parser of one CAAML file; each error is a FieldDataError that names the element."""
 
@@ -108,10 +117,12 @@ class _Profile:
         records = (root.child("timeRef", "recordTime"), root.child("validTime"))
         paths = (("TimeInstant", "timePosition"), ("TimePeriod", "beginPosition"))
         times = (record.text_of(*path) for record in records if record for path in paths)
+        source = root.child("srcRef") or root.child("metaDataProperty", "MetaData", "srcRef")
+        observers = () if source is None else (source.text_of(*path) for path in _OBSERVER_PATHS)
         return SnowPit(
             name=place.text_of("name") or root.attributes.get("id", ""),
             time=next(filter(None, times), ""),
-            observer=self._observer(),
+            observer=next(filter(None, observers), ""),
             comment=root.text_of("metaData", "comment") or measured.text_of("comment"),
             country=place.text_of("country"),
             region=place.text_of("region"),
@@ -139,19 +150,6 @@ class _Profile:
         text = place.text_of(*path)
         is_number = text.replace(".", "", 1).isdecimal()
         return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._text_or_empty(text)
-
-    def _observer(self) -> str:
-        """Name of the observing person or organisation; "" if it is missing."""
-        source = self._root.child("srcRef") or self._root.child("metaDataProperty", "MetaData", "srcRef")
-        if source is None:
-            return ""
-        paths = (
-            ("Person", "name"),
-            ("Operation", "contactPerson", "name"),
-            ("Operation", "contactPerson", "Person", "name"),
-            ("Operation", "name"),
-        )
-        return next(filter(None, (source.text_of(*path) for path in paths)), "")
 
     def _position(self, place: Element) -> tuple[float, float] | tuple[None, None]:
         """Latitude and longitude; with CRS84 in version 5 the longitude comes first."""
@@ -306,9 +304,6 @@ class _Profile:
         return "" if text.lower() in NIL else text
 
 
-_FOOT: Final = 0.3048
-_INCH: Final = 0.0254
-_FAHRENHEIT: Final = 5.0 / 9.0
 _MEANINGLESS: Final = re.compile(r"[\s^*·]")
 
 
@@ -343,8 +338,8 @@ _LENGTHS: Final = {
     **_proportional(CM, "cm"),
     **_proportional(1.0, "m"),
     **_proportional(1e3, "km"),
-    **_proportional(_INCH, "in", "inch"),
-    **_proportional(_FOOT, "ft", "feet"),
+    **_proportional(0.0254, "in", "inch"),
+    **_proportional(0.3048, "ft", "feet"),
 }
 LENGTH: Final = CaamlUnits("cm", _LENGTHS)
 ELEVATION: Final = CaamlUnits("m", _LENGTHS)
@@ -353,7 +348,7 @@ TEMPERATURE: Final = CaamlUnits(
     "degC",
     {
         **dict.fromkeys(("degC", "C", "°C", "Cel"), (0.0, 1.0)),
-        **dict.fromkeys(("degF", "F", "°F"), (-32.0, _FAHRENHEIT)),
+        **dict.fromkeys(("degF", "F", "°F"), (-32.0, 5.0 / 9.0)),
         **dict.fromkeys(("K", "degK"), (-ZERO_CELSIUS, 1.0)),
     },
 )

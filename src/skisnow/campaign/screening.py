@@ -50,13 +50,13 @@ def _bad_readings(campaign: Campaign, tests: PenetrationTests, geometry: Geometr
     deepest = np.maximum.reduceat(depth, starts) if len(tests) else np.zeros(0)
     limit = maximum_depths(campaign, tests, geometry) * (1 + _ROUNDING)
     return {
-        "cancelled": begins & _is_filled(tests.cancelled)[series],
+        "cancelled": begins & (np.array(tests.cancelled, dtype=object) != "")[series],
         "too_few_loads": begins & (np.diff(tests.first) < problems.FEWEST_LOADS)[series],
         "loads_not_rising": ~begins & (np.diff(tests.load, prepend=0.0) <= 0),
         "depth_shrinks": ~begins & (np.diff(depth, prepend=0.0) < 0),
         "zero_depth": largest & (depth == 0),
         "beyond_tool": (depth == deepest[series]) & (depth > limit[series]),
-        "below_resolution": largest & _is_below_resolution(depth, campaign.gauge_resolution),
+        "below_resolution": largest & (depth < _smallest_usable_depth(campaign) * (1 - _ROUNDING)),
         "creeps": _creeping_readings(campaign, tests),
         **_implausible_unloading(campaign, tests),
     }
@@ -67,22 +67,17 @@ def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
     tests = campaign.shear
     depth = tests.penetration_depth if tests is not None else np.zeros(0)
     return {
-        "cancelled": _is_filled(tests.cancelled if tests is not None else ()),
+        "cancelled": np.array(
+            [reason != "" for reason in tests.cancelled] if tests is not None else [], dtype=np.bool_
+        ),
         "zero_depth": depth == 0,
-        "below_resolution": _is_below_resolution(depth, campaign.gauge_resolution),
+        "below_resolution": depth < _smallest_usable_depth(campaign) * (1 - _ROUNDING),
     }
 
 
-def _is_filled(reasons: tuple[str, ...]) -> BoolArray:
-    """True for each test with a reason, shape (n,)."""
-    return np.fromiter(map(bool, reasons), dtype=np.bool_, count=len(reasons))
-
-
-def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArray:
-    """True for each depth (m) below the smallest usable one; all False if the resolution is None."""
-    if resolution is None:
-        return np.zeros(len(depth), dtype=np.bool_)
-    return depth < problems.RESOLUTIONS * resolution * (1 - _ROUNDING)
+def _smallest_usable_depth(campaign: Campaign) -> float:
+    """Smallest depth (m) that the gauge resolves well enough; 0 if its step is not stated."""
+    return problems.RESOLUTIONS * (campaign.gauge_resolution or 0.0)
 
 
 def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
@@ -245,7 +240,7 @@ def _flag(
         _ALLOWED[code],
         fewest_loads=problems.FEWEST_LOADS,
         resolutions=problems.RESOLUTIONS,
-        smallest_depth=problems.RESOLUTIONS * (campaign.gauge_resolution or 0.0) / MM,
+        smallest_depth=_smallest_usable_depth(campaign) / MM,
         creep_steps=problems.CREEP_STEPS,
         creep_share=problems.CREEP_SHARE,
         **fields,

@@ -116,7 +116,8 @@ def _penetration_variables(tests: PenetrationTests) -> Iterator[_Variable]:
         of, name=tests.experiment, site=tests.site, tool=tests.tool, spot=tests.spot, cancelled=tests.cancelled
     )
     yield _Variable(f"{of}_edge_angle", of, tests.edge_angle, "rad", "angle between the base and the snow surface")
-    yield from _snow_of(of, tests.snow_density, tests.drop_cone_depth)
+    yield _Variable(f"{of}_snow_density", of, tests.snow_density, "kg m-3", "density of the snow at the experiment")
+    yield _Variable(f"{of}_drop_cone_depth", of, tests.drop_cone_depth, "m", "drop-cone depth at the experiment")
     yield _row_size_variable(of, reading, tests.first)
     yield _Variable(f"{reading}_load", reading, tests.load, "N", "load normal to the snow surface")
     yield _Variable(f"{reading}_depth", reading, tests.penetration_depth, "m", "depth below the snow surface")
@@ -142,7 +143,8 @@ def _shear_variables(tests: ShearTests) -> Iterator[_Variable]:
     yield _Variable(f"{of}_depth", of, tests.penetration_depth, "m", "depth of the plate's edge")
     yield _Variable(f"{of}_lever_arm", of, tests.lever_arm, "m", "from the pole's axis to the middle of the plate")
     yield _Variable(f"{of}_moment", of, tests.moment, "N m", "largest moment on the pole")
-    yield from _snow_of(of, tests.snow_density, tests.drop_cone_depth)
+    yield _Variable(f"{of}_snow_density", of, tests.snow_density, "kg m-3", "density of the snow at the experiment")
+    yield _Variable(f"{of}_drop_cone_depth", of, tests.drop_cone_depth, "m", "drop-cone depth at the experiment")
     yield _Variable(f"{of}_row", of, tests.row, "1", "line of the file")
     yield from _further(of, tests.further)
     if tests.turning is not None:
@@ -157,12 +159,6 @@ def _text_variables(dimension: str, **columns: Sequence[str]) -> Iterator[_Varia
     for name, values in columns.items():
         meaning = "reason why the experiment does not count" if name == "cancelled" else name
         yield _Variable(f"{dimension}_{name}", dimension, values, "", meaning)
-
-
-def _snow_of(dimension: str, density: npt.NDArray[Any], cone_depth: npt.NDArray[Any]) -> Iterator[_Variable]:
-    """Columns of snow density and drop-cone depth at each experiment."""
-    yield _Variable(f"{dimension}_snow_density", dimension, density, "kg m-3", "density of the snow at the experiment")
-    yield _Variable(f"{dimension}_drop_cone_depth", dimension, cone_depth, "m", "drop-cone depth at the experiment")
 
 
 def _row_size_variable(dimension: str, reading: str, first: IntArray) -> _Variable:

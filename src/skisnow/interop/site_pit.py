@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.errors import ParameterError
 from .._support.units import MM
-from ..campaign.records import Campaign, DensitySamples
+from ..campaign.records import Campaign
 from ..campaign.snow_micro_pen import SnowMicroPenProfile
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
 from ..estimation import Analysis
@@ -93,27 +93,23 @@ def _cells_of_site(campaign: Campaign, site: str, column: str) -> Iterator[str]:
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
-    """Every sample of density.csv; then densities of experiments that are not among them, each once."""
-    sampled = () if campaign.density is None else tuple(_samples(campaign.density, site))
-    yield from sampled
-    sampled_densities = {sample.snow_density for sample in sampled}
+    """Used samples of density.csv, from top to bottom if the thickness is known; then other densities of experiments."""
+    sampled_densities: set[float] = set()
+    if (table := campaign.density) is not None:
+        columns = (table.sample_depth, table.sample_thickness, table.snow_density)
+        rows = zip(table.site, table.cancelled, *(column.tolist() for column in columns), strict=True)
+        for name, reason, depth, thickness, density in rows:
+            if name == site and not reason:
+                is_placed = math.isfinite(depth) and math.isfinite(thickness)
+                top = max(depth - 0.5 * thickness, 0.0) if is_placed else np.nan_to_num(depth).item()
+                sampled_densities.add(density)
+                yield LayerDensity(top, density, thickness if is_placed else None)
     for tests in (campaign.penetration, campaign.shear):
         if tests is not None:
             for name, density, reason in zip(tests.site, tests.snow_density.tolist(), tests.cancelled, strict=True):
                 if name == site and not reason and math.isfinite(density) and density not in sampled_densities:
                     sampled_densities.add(density)
                     yield LayerDensity(0.0, density)
-
-
-def _samples(table: DensitySamples, site: str) -> Iterator[LayerDensity]:
-    """The site's samples that were not cancelled, from top to bottom where the thickness is known."""
-    columns = (table.sample_depth, table.sample_thickness, table.snow_density)
-    rows = zip(table.site, table.cancelled, *(column.tolist() for column in columns), strict=True)
-    for name, reason, depth, thickness, density in rows:
-        if name == site and not reason:
-            is_placed = math.isfinite(depth) and math.isfinite(thickness)
-            top = max(depth - 0.5 * thickness, 0.0) if is_placed else np.nan_to_num(depth).item()
-            yield LayerDensity(top, density, thickness if is_placed else None)
 
 
 def _used_recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:

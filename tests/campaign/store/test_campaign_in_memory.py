@@ -22,7 +22,7 @@ from skisnow.campaign.store import (
 )
 from skisnow.campaign.store import conflict as conflict_module
 from skisnow.campaign.store.conflict import Conflict, EntryIndex, Side, _shorten_text
-from skisnow.campaign.store.journal_entry import JournalEntry
+from skisnow.campaign.store.journal import JournalEntry
 from skisnow.campaign.store.stored_tables import (
     BRANCH_WORD,
     FORMS,

@@ -26,7 +26,7 @@ from skisnow.campaign.store import (
     write_campaign,
 )
 from skisnow.campaign.store.engine import writing
-from skisnow.campaign.store.journal_entry import uid_of_file
+from skisnow.campaign.store.journal import uid_of_file
 from skisnow.campaign.store.schema import journal_entry
 
 TOML = """name = "a day"

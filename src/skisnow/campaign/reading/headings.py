@@ -92,7 +92,8 @@ def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> str:
     value = section.values[heading]
     unit = known_unit(value) if isinstance(value, str) else ""
     if not unit:
-        allowed = Message("one of the units {every_unit}", every_unit=every_unit())
+        every_unit = ", ".join(units_for(f"_{of_column}") for of_column in _OWN)
+        allowed = Message("one of the units {every_unit}", every_unit=every_unit)
         section.refuse(heading, allowed, Message("Write the unit in quotes."))
     return unit
 
@@ -240,11 +241,6 @@ def units_for(column: str) -> str:
     """
     unit = unit_of_column(column)
     return ", ".join([_OWN[unit][0], *(names[0] for names in _OTHER[unit])])
-
-
-def every_unit() -> str:
-    """List, as text, of all units that skisnow converts."""
-    return ", ".join(f"{names[0]}, {', '.join(other[0] for other in _OTHER[unit])}" for unit, names in _OWN.items())
 
 
 SYNONYMS: Final[dict[str, tuple[str, ...]]] = {

@@ -15,8 +15,7 @@ from .export import (
     position_entry,
     write_campaign,
 )
-from .journal import JournalHead, Journals, OvertakenError
-from .journal_entry import JournalEntry, NewEntry
+from .journal import JournalEntry, JournalHead, Journals, NewEntry, OvertakenError
 from .replayed import Reading, ReplayedCampaign, ReplayedTest, campaign_files, campaign_in_memory, replay_journal
 from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path

@@ -10,7 +10,7 @@ from typing import Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, select
 
-from .journal_entry import DESCRIPTION, JournalEntry, parse_entry
+from .journal import DESCRIPTION, JournalEntry, parse_entry
 from .rows import entry_damage_error
 from .schema import campaign, journal, journal_entry
 from .stored_tables import cell_of

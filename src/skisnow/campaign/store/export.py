@@ -22,8 +22,7 @@ from ..reading.table_forms import CORRECTIONS
 from . import replayed
 from .engine import database_errors, file_errors, reading
 from .folder import Progress, StoredFile, new_folder, no_progress
-from .journal import JournalHead, Journals
-from .journal_entry import JournalEntry, NewEntry
+from .journal import JournalEntry, JournalHead, Journals, NewEntry
 from .replayed import ReplayedCampaign, ReplayedTest, replay_journal
 from .rows import StoredCampaign, campaign_rows, pick_id
 from .store import Store

@@ -17,7 +17,7 @@ from ..reading.corrections import STATUS
 from ..reading.table_forms import BRANCH, CORRECTIONS, TABLES, TableForm
 from ..reading.tables import Cells
 from ..records import Campaign
-from .journal_entry import DESCRIPTION, JournalEntry
+from .journal import DESCRIPTION, JournalEntry
 
 
 @dataclass(slots=True)

@@ -20,8 +20,7 @@ from . import rows
 from .conflict import Conflict, Side, entries_by_uid, entry_index, open_conflicts, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
-from .journal import entered_name
-from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
+from .journal import DESCRIPTION, NewEntry, entered_name, insert_entries, next_sequence, number_of_uid, write_entry
 from .schema import campaign, journal, journal_entry
 from .store import Store
 from .stored_tables import FORMS

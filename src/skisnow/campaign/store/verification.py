@@ -12,7 +12,7 @@ from ..._support.errors import StoreError
 from ..._support.user_files import natural_number
 from .engine import is_file, savepoint
 from .folder import Progress, manifest_sha256, unsafe_because
-from .journal_entry import as_bytes, entry_sha256, readable_entry
+from .journal import as_bytes, entry_sha256, readable_entry
 from .rows import is_sound, stored_campaign
 from .schema import campaign, campaign_file, content, journal_entry
 from .server import broken_references

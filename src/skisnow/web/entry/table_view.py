@@ -14,7 +14,7 @@ from ..._support.user_files import natural_number
 from ...campaign import QUALITY_FLAGS
 from ...campaign.reading.table_forms import PENETRATION, SHEAR, TableForm
 from ...campaign.store import NewEntry, OvertakenError, Reading, ReplayedTest
-from ...campaign.store.journal_entry import Action
+from ...campaign.store.journal import Action
 from ...campaign.store.stored_tables import FORMS
 from ...report.charts import SeriesCurve
 from ...report.formatting import significant

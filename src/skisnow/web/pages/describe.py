@@ -13,7 +13,7 @@ from ..._support.user_files import toml_values
 from ...campaign.problems import Problem
 from ...campaign.reading.campaign_file import SHAPES
 from ...campaign.store import Journals, NewEntry, OvertakenError
-from ...campaign.store.journal_entry import DESCRIPTION
+from ...campaign.store.journal import DESCRIPTION
 from ...campaign.store.replayed import description_text
 from ..edit_session import EditSession
 from ..elements import StatusLine, choice, field, heading, page_frame, sentence
