@@ -69,7 +69,7 @@ def test_every_key_of_the_summary_and_every_column_is_told() -> None:
     assert [outcome for outcome in get_args(Outcome) if f"| `{outcome}` |" not in SCENARIO] == []
 
 
-CODE = re.compile(r'\b(?:error|warning|rows\.refuse|_refusal)\([^"()]*"([a-z0-9_]+)"')
+CODE = re.compile(r'\b(?:(?:error|warning|rows\.refuse|_refusal)\(|partial\((?:error|warning), )[^"()]*"([a-z0-9_]+)"')
 """Code of a problem in the call that makes it."""
 
 

@@ -271,15 +271,12 @@ class _Profile:
         text = parent.text_of(*path)
         if text.lower() in NIL or (words and not any(character.isdigit() for character in text)):
             return None
-        above = [parent.child(*path[:length]) for length in range(len(path), 0, -1)]
-        units_given = [
-            element.attributes["uom"] for element in above if element is not None and "uom" in element.attributes
-        ]
-        name = path[-1]
+        name, above = path[-1], (parent.child(*path[:length]) for length in range(len(path), 0, -1))
+        stated = [element.attributes.get("uom") for element in above if element is not None]
         if profile is not None:
-            of_profile = _UNIT_OF_PROFILE.get(name, f"uom{name[0].upper()}{name[1:]}")
-            units_given += [profile.attributes[of_profile]] if of_profile in profile.attributes else []
-        return self._convert(units, name, self._finite(name, text), units_given[0] if units_given else None)
+            stated.append(profile.attributes.get(_UNIT_OF_PROFILE.get(name, f"uom{name[0].upper()}{name[1:]}")))
+        unit = next((unit for unit in stated if unit is not None), None)
+        return self._convert(units, name, self._finite(name, text), unit)
 
     def _convert(self, units: CaamlUnits, name: str, value: float, unit: str | None) -> float:
         """Value in SI; rejects an unknown unit or a number that is too large."""

@@ -66,10 +66,9 @@ def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
     """Quality flags of the shear tests: masks over them for ``cancelled``, ``zero_depth``, ``below_resolution``."""
     tests = campaign.shear
     depth = tests.penetration_depth if tests is not None else np.zeros(0)
+    reasons: tuple[str, ...] = tests.cancelled if tests is not None else ()
     return {
-        "cancelled": np.array(
-            [reason != "" for reason in tests.cancelled] if tests is not None else [], dtype=np.bool_
-        ),
+        "cancelled": np.array(reasons, dtype=object) != "",
         "zero_depth": depth == 0,
         "below_resolution": depth < _smallest_usable_depth(campaign) * (1 - _ROUNDING),
     }

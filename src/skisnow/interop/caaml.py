@@ -64,17 +64,6 @@ def _profile_xml(pit: SnowPit) -> Iterator[str]:
     person = _element_xml("name", pit.observer or "unknown")
     yield f'<caaml:srcRef><caaml:Person gml:id="observer-{pit_id}">{person}</caaml:Person></caaml:srcRef>'
     yield f'<caaml:locRef gml:id="location-{pit_id}">'
-    yield from _place_xml(pit, pit_id)
-    yield "</caaml:locRef>"
-    yield '<caaml:snowProfileResultsOf><caaml:SnowProfileMeasurements dir="top down">'
-    yield from _measurements_xml(pit)
-    yield "</caaml:SnowProfileMeasurements></caaml:snowProfileResultsOf>"
-    yield _element_xml("application", "skisnow")
-    yield "</caaml:SnowProfile>"
-
-
-def _place_xml(pit: SnowPit, pit_id: str) -> Iterator[str]:
-    """XML of the pit's place, with elevation (m), aspect, slope angle (°), position, country and region, if known."""
     yield _element_xml("name", pit.name)
     yield _element_xml("obsPointSubType", "snow profile location")
     if pit.elevation is not None:
@@ -92,6 +81,12 @@ def _place_xml(pit: SnowPit, pit_id: str) -> Iterator[str]:
         yield _element_xml("country", pit.country)
     if pit.region:
         yield _element_xml("region", pit.region)
+    yield "</caaml:locRef>"
+    yield '<caaml:snowProfileResultsOf><caaml:SnowProfileMeasurements dir="top down">'
+    yield from _measurements_xml(pit)
+    yield "</caaml:SnowProfileMeasurements></caaml:snowProfileResultsOf>"
+    yield _element_xml("application", "skisnow")
+    yield "</caaml:SnowProfile>"
 
 
 def _measurements_xml(pit: SnowPit) -> Iterator[str]:

@@ -93,7 +93,7 @@ def _cells_of_site(campaign: Campaign, site: str, column: str) -> Iterator[str]:
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
-    """Used samples of density.csv, from top to bottom if the thickness is known; then other densities of experiments."""
+    """Used samples of density.csv, placed by their thickness if known; then the other densities of experiments."""
     sampled_densities: set[float] = set()
     if (table := campaign.density) is not None:
         columns = (table.sample_depth, table.sample_thickness, table.snow_density)

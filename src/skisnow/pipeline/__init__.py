@@ -120,7 +120,14 @@ def turn(
     require_range("runs", runs, FEWEST)
     workers = worker_count(workers)
     say = progress or (lambda *_: None)
-    analysis = campaign if isinstance(campaign, Analysis) else _analyse_with_site_checked(campaign, site, progress)
+    if isinstance(campaign, Analysis):
+        analysis = campaign
+    else:  # the site is checked before the estimates, which take long
+        read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
+        pressed = set(read.penetration.site) if read.penetration is not None else set()
+        if site is not None and pressed and site_of_campaign(read, site) not in pressed:
+            raise no_used_experiment(read.name, site, sorted(pressed))
+        analysis = analyse(read, progress=progress)
     snow = analysis.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
         snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
@@ -157,17 +164,6 @@ def turn(
         warnings=warnings,
         analysis=analysis,
     )
-
-
-def _analyse_with_site_checked(
-    campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None
-) -> Analysis:
-    """Read and analyse all sites of a campaign; `site` must have penetration tests, checked before the estimates."""
-    read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
-    pressed = set(read.penetration.site) if read.penetration is not None else set()
-    if site is not None and pressed and site_of_campaign(read, site) not in pressed:
-        raise no_used_experiment(read.name, site, sorted(pressed))
-    return analyse(read, progress=progress)
 
 
 CAMBER_ROUNDING: Final = "ski.camber_rounding_mm"

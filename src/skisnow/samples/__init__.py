@@ -18,7 +18,7 @@ from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowP
 from ..interop.caaml import caaml_text
 from ..scenario import Plane, load_scenario
 from ..simulation.simulated_run import simulate
-from ..track.projection import GeodeticPoint, earth_centred, geodetic
+from ..track.projection import GeodeticPoint, east_north_up_axes, geodetic
 from ..track.slope_frame import slope_axes
 
 if TYPE_CHECKING:
@@ -76,12 +76,8 @@ def on_earth(place: FloatArray, *, slope_angle: float) -> FloatArray:
     """Latitude (°), longitude (°), height (m) of points x down the slope, y to the left, shape (n, 2) or (n, 3)."""
     inside = np.zeros((len(place), 3))
     inside[:, : place.shape[1]] = place
-    enu = inside @ slope_axes(AZIMUTH_DEG * DEGREE, slope_angle)
-    latitude, longitude = ORIGIN.latitude_deg * DEGREE, ORIGIN.longitude_deg * DEGREE
-    east = np.array([-np.sin(longitude), np.cos(longitude), 0.0])
-    up = np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)])
-    origin = earth_centred(np.array(ORIGIN.latitude_deg), np.array(ORIGIN.longitude_deg), np.array(ORIGIN.height))
-    return geodetic(origin + enu @ np.stack([east, np.cross(up, east), up]))
+    east_north_up = inside @ slope_axes(AZIMUTH_DEG * DEGREE, slope_angle)
+    return geodetic(ORIGIN.in_space + east_north_up @ east_north_up_axes(ORIGIN.latitude_deg, ORIGIN.longitude_deg))
 
 
 def gpx_track(place: FloatArray, time: FloatArray, *, slope_angle: float) -> str:

@@ -88,7 +88,7 @@ def test_a_file_that_cannot_be_read(folder: Path, place: Path, monkeypatch: pyte
     def forbidden(file: Path, _: int) -> None:
         raise PermissionError(errno.EACCES, "Permission denied", str(file))
 
-    monkeypatch.setattr("skisnow.campaign.store.store.read_chunks", forbidden)
+    monkeypatch.setattr("skisnow.campaign.store.folder.read_chunks", forbidden)
     with Store.open(place) as store:
         with raises(StoreError, "not_read", reason=NOT_ALLOWED):
             store.add(folder)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import permutations
 from typing import Final
 
 import numpy as np
@@ -131,20 +132,11 @@ def _refuse_repeated(tables: Sequence[ImportedTable], dialogue: Dialogue) -> Non
         )
         for table in tables
     ]
-    pairs = [
-        (table, other)
-        for table, own in zip(tables, contents, strict=True)
-        for other, others in zip(tables, contents, strict=True)
-        if table is not other
-        and table.form is other.form
-        and own
-        and own <= others
-        and (own != others or table.section.key < other.section.key)
-    ]
-    for table, other in pairs:
+    for (table, own), (other, others) in permutations(zip(tables, contents, strict=True), 2):
         key, value = table.section.key, other.section.key
-        action = Message('Exclude one with --table "{key}=-".', key=key)
-        dialogue.refuse("repeated_table", key, value=value, allowed=Message("each measurement once"), action=action)
+        if table.form is other.form and own and own <= others and (own != others or key < value):
+            action = Message('Exclude one with --table "{key}=-".', key=key)
+            dialogue.refuse("repeated_table", key, value=value, allowed=Message("each measurement once"), action=action)
 
 
 def _with_names(
@@ -198,26 +190,19 @@ def _choose_site(
 def _with_sites_before_names(tables: Sequence[ImportedTable]) -> list[ImportedTable]:
     """Copies of the tables with the site before each name of a test if one occurs in several tables of a kind."""
     names = Counter(
-        name
+        (table.form.file, name)
         for table in tables
-        for name in {
-            (table.form.file, row.cells[table.form.key]) for row in table.rows if row.cells.get(table.form.key)
-        }
+        for name in {row.cells[table.form.key] for row in table.rows if row.cells.get(table.form.key)}
     )
     files = {file for (file, _), times in names.items() if times > 1}
-    return [
-        replace(
-            table,
-            rows=tuple(
-                replace(row, cells=row.cells | {table.form.key: f"{row.cells['site']} {row.cells[table.form.key]}"})
-                for row in table.rows
-                if table.form.key in row.cells
-            ),
-        )
-        if table.form.file in files
-        else table
-        for table in tables
-    ]
+    renamed = []
+    for table in tables:
+        key, rows = table.form.key, table.rows
+        if table.form.file in files:
+            named = [(row, row.cells) for row in rows if key in row.cells]
+            rows = tuple(replace(row, cells=cells | {key: f"{cells['site']} {cells[key]}"}) for row, cells in named)
+        renamed.append(replace(table, rows=rows))
+    return renamed
 
 
 def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:

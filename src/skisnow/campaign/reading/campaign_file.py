@@ -178,12 +178,11 @@ def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], froze
         if "shape" not in entry.values:
             entry.refuse("shape", allowed, Message("Add the shape."))
         shape_name = entry.text("shape")
-        if shape_name is None:
+        shape = SHAPES.get(shape_name or "")
+        if shape is None:
+            if shape_name is not None:
+                entry.refuse_unknown("shape", shape_name, SHAPES, allowed, Message("Correct the shape."))
             continue
-        if shape_name not in SHAPES:
-            entry.refuse_unknown("shape", shape_name, SHAPES, allowed, Message("Correct the shape."))
-            continue
-        shape = SHAPES[shape_name]
         entry.refuse_misspelt(("name", "shape", *shape.lengths))
         lengths = {length.field: _required_length(entry, length) for length in shape.lengths.values()}
         if name is not None and all(length is not None for length in lengths.values()):

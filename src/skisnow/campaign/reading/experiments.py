@@ -87,7 +87,16 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
     key = table.names[table.form.key]
     if table.form.key in table.absent:
         return
-    yield from _repeated_name(table, blocks)
+    first_row: dict[int, int] = {}
+    for row in blocks.start[~key.is_blank[blocks.start]].tolist():
+        before = first_row.setdefault(int(key.code[row]), row)
+        if before != row:
+            allowed = Message(
+                "each name for one experiment, its rows together; this one also begins in row {before}",
+                before=int(table.row[before]),
+            )
+            action = Message("Rename one of the two, or bring the rows together.")
+            yield table.error(row, "mixed_experiment", table.form.key, key[row], allowed, action)
     for name in (*table.form.names, "spot"):
         column = table.names[name]
         if name != table.form.key:
@@ -118,23 +127,6 @@ def check_one_site(table: Table) -> Iterator[Problem]:
         reference = first_row.setdefault(int(key.code[row]), row)
         if site.code[row] != site.code[reference]:
             yield _mixed_error(table, row, reference, "site", site[row], site[reference])
-
-
-def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Errors for experiments whose name an earlier, separate block of rows already has."""
-    key = table.names[table.form.key]
-    code = key.code[blocks.start]
-    _, met_first = np.unique(code, return_index=True)
-    again = np.ones(len(code), dtype=np.bool_)
-    again[met_first] = False
-    start_of_code = dict(zip(code[met_first].tolist(), blocks.start[met_first].tolist(), strict=True))
-    for row in blocks.start[again & ~key.is_blank[blocks.start]].tolist():
-        before = int(table.row[start_of_code[int(key.code[row])]])
-        allowed = Message(
-            "each name for one experiment, its rows together; this one also begins in row {before}", before=before
-        )
-        action = Message("Rename one of the two, or bring the rows together.")
-        yield table.error(row, "mixed_experiment", table.form.key, key[row], allowed, action)
 
 
 def _mixed_error(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:

@@ -79,6 +79,8 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
         error("unreadable_file", form.file, row=header.row, column=name, value=name, allowed=allowed, action=action)
         for name in repeated
     ]
+    missing_column = partial(error, "missing_column", form.file, row=header.row)
+    unknown_column = partial(warning, "unknown_column", form.file, row=header.row)
     as_written = {heading.lower(): heading for heading in unknown}
     likely = {column: heading for heading, column in headings.columns_by_synonym(form, unknown).items()}
     for name in missing:
@@ -86,9 +88,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
         meant = as_written[near[0]] if near else likely.get(name)
         action = _advise_mapping(meant, name) if meant else Message("Add it; the unit belongs to the name.")
         allowed = Message("the columns {required}", required=list(form.required))
-        problems.append(
-            error("missing_column", form.file, row=header.row, column=name, value=meant, allowed=allowed, action=action)
-        )
+        problems.append(missing_column(column=name, value=meant, allowed=allowed, action=action))
     free = [name for name in form.known if name not in header.columns]
     for name in unknown:
         near = difflib.get_close_matches(name, free, n=1)
@@ -97,10 +97,8 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
             kept = Message("The column is kept as text and not interpreted.")
             action = joined([kept, _advise_mapping(name, near[0])])
         allowed = Message("the columns {known}", known=list(form.known))
-        note = warning(
-            "unknown_column", form.file, row=header.row, column=name, value=name, allowed=allowed, action=action
-        )
-        problems.append(replace(note, needs_action=bool(near)))
+        note = unknown_column(column=name, value=name, allowed=allowed, action=action, needs_action=bool(near))
+        problems.append(note)
     return problems
 
 

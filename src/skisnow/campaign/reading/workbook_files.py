@@ -144,12 +144,7 @@ def _kind(title: str) -> str:
 def _csv(rows: Iterable[list[str]]) -> bytes:
     """CSV of rows, all cells in quotes; each row, also a blank one, has one line, so that row numbers stay."""
     stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n", quoting=csv.QUOTE_ALL)
-    for cells in rows:
-        if cells:
-            writer.writerow(cells)
-        else:
-            stream.write("\n")
+    csv.writer(stream, lineterminator="\n", quoting=csv.QUOTE_ALL).writerows(rows)
     return stream.getvalue().encode()
 
 

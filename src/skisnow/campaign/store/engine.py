@@ -21,6 +21,7 @@ from sqlalchemy.exc import DBAPIError
 from ..._support import sqlite_file
 from ..._support.errors import StoreError
 from ..._support.messages import Message, template
+from ..._support.sqlite_file import connect
 from .schema import APPLICATION_ID, metadata
 from .server import ServerAddress, StorePlace, lock_for_writing, needs_migration, open_server, reason
 
@@ -77,7 +78,7 @@ def _file_reason(error: BaseException, path: Path) -> str:
 
 def _find_damage(path: Path) -> str | None:
     """First damage of a store's file; None without one, and also if SQLite cannot read the file."""
-    with suppress(sqlite3.Error), closing(sqlite_file.connect(path, mode="ro")) as database:
+    with suppress(sqlite3.Error), closing(connect(path, mode="ro")) as database:
         return sqlite_file.first_damage(database)
     return None
 
@@ -180,7 +181,7 @@ def _engine(path: Path, mode: sqlite_file.Mode, busy_timeout_s: float) -> Engine
     """SQLAlchemy engine whose connections use foreign keys, full synchronisation and skisnow's own BEGIN."""
 
     def open_file() -> sqlite3.Connection:
-        connection = sqlite_file.connect(path, mode=mode, timeout_s=busy_timeout_s)
+        connection = connect(path, mode=mode, timeout_s=busy_timeout_s)
         try:
             connection.execute("PRAGMA foreign_keys = ON")
             connection.execute("PRAGMA synchronous = FULL")

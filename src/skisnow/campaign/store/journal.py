@@ -288,9 +288,8 @@ class Journals:
         """
         with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             _require_id(connection, _ENTERED, id)
-            if (earlier := _earlier_entry(connection, id, entry)) is not None:
+            if (earlier := _earlier_entry(connection, id, entry, seen)) is not None:
                 return earlier
-            _require_current(connection, id, entry, seen)
             _require_entry_of_test(connection, id, entry)
             return write_entry(connection, id, entry)
 
@@ -306,9 +305,8 @@ class Journals:
         """
         with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             _require_id(connection, _STORED, id)
-            if (earlier := _earlier_entry(connection, id, entry)) is not None:
+            if (earlier := _earlier_entry(connection, id, entry, seen)) is not None:
                 return earlier
-            _require_current(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=now()))
             if entry.action != "add":  # an added photo or position is in no file
@@ -349,17 +347,16 @@ def _is_about_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
     return and_(columns.journal_id == id_, columns.file == entry.file, columns.test == entry.test)
 
 
-def _earlier_entry(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
-    """Entry of the store with the same ``once``: the writer sent the new one before; None without one."""
-    if entry.once is None:
-        return None
-    query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
-    row = connection.execute(query).mappings().first()
-    return None if row is None else parse_entry(row)
+def _earlier_entry(connection: Connection, id_: str, entry: NewEntry, seen: int) -> JournalEntry | None:
+    """Entry of the store with the same ``once``, if the writer sent the new one before; None for a new one.
 
-
-def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
-    """Raise OvertakenError if the test has a newer entry than sequence `seen`, the last that the writer has seen."""
+    Raises OvertakenError: the test has a newer entry than sequence `seen`, the last that the writer has seen.
+    """
+    if entry.once is not None:
+        sent = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
+        earlier = connection.execute(sent).mappings().first()
+        if earlier is not None:
+            return parse_entry(earlier)
     query = select(journal_entry).where(_is_about_test(id_, entry), journal_entry.c.sequence > seen)
     row = connection.execute(query.order_by(journal_entry.c.sequence.desc())).mappings().first()
     if row is not None:
@@ -368,6 +365,7 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
             "Nothing was stored: {who} changed {subject} meanwhile ({at}). Check its present state, then enter the "
             "missing values again."
         ).tag("overtaken", who=row["who"] or Message("somebody"), subject=subject, at=row["at"])
+    return None
 
 
 def _require_entry_of_test(connection: Connection, id_: str, entry: NewEntry) -> None:

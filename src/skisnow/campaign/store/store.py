@@ -17,22 +17,10 @@ from sqlalchemy import Engine
 
 from ..._support.errors import StoreError
 from ..._support.units import Facts, Shown
+from . import folder as campaign_folder
 from . import rows
 from .engine import database_errors, file_errors, open_engine, reading, writing
-from .folder import (
-    FileState,
-    Progress,
-    StoredFile,
-    campaign_name,
-    changed_files,
-    checked_bytes,
-    list_files,
-    manifest_sha256,
-    new_folder,
-    no_progress,
-    read_chunks,
-    write_file,
-)
+from .folder import FileState, Progress, StoredFile, campaign_name, checked_bytes, no_progress
 from .rows import StoredCampaign
 from .schema import CHUNK_BYTES
 from .server import ServerAddress, StorePlace, store_place
@@ -126,10 +114,9 @@ class Store(Shown):
             n_bytes = sum(size for size, _ in before.values())
             files = _hashed_files(folder, before, lambda done: progress(done, 2 * n_bytes))
             (n_errors, n_warnings), failure = _check(folder)
-            sha256 = manifest_sha256(files)
-            campaign = StoredCampaign(
-                sha256[: rows.ID_DIGITS], campaign_name(folder), datetime.now(UTC), sha256, n_errors, n_warnings, files
-            )
+            sha256 = campaign_folder.manifest_sha256(files)
+            id_, name, added_at = sha256[: rows.ID_DIGITS], campaign_name(folder), datetime.now(UTC)
+            campaign = StoredCampaign(id_, name, added_at, sha256, n_errors, n_warnings, files)
             with database_errors(self.path, "not_stored"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
                 for file in files:
@@ -137,7 +124,7 @@ class Store(Shown):
                     done += file.size
                     progress(done, 2 * n_bytes)
                 is_new = rows.store_campaign(connection, campaign)
-                rows.refuse_changed(changed_files(before, list_files(folder)))
+                rows.refuse_changed(campaign_folder.changed_files(before, campaign_folder.list_files(folder)))
         fields = {field: getattr(campaign, field) for field in StoredCampaign.__slots__}
         return AddedCampaign(**fields, already_stored=not is_new, n_repaired=n_repaired, check_failure=failure)
 
@@ -151,7 +138,7 @@ class Store(Shown):
             raise StoreError("The store {path} is in {folder} itself; keep it somewhere else.").tag(
                 "inside_folder", path=self.path, folder=folder
             )
-        files = list_files(folder)
+        files = campaign_folder.list_files(folder)
         if not files:
             raise StoreError("{folder} contains no file; name the folder with the campaign's files.").tag(
                 "no_files", folder=folder
@@ -203,9 +190,9 @@ class Store(Shown):
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             stored = rows.one_campaign(connection, id)
             rows.require_whole(stored)
-            with file_errors(out, "not_written"), new_folder(out) as filling:
+            with file_errors(out, "not_written"), campaign_folder.new_folder(out) as filling:
                 for file in stored.files:
-                    write_file(filling, file, rows.stored_chunks(connection, file.sha256))
+                    campaign_folder.write_file(filling, file, rows.stored_chunks(connection, file.sha256))
                     done += file.size
                     progress(done, stored.n_bytes)
                 if complete is not None:
@@ -221,9 +208,8 @@ class Store(Shown):
             stored = rows.one_campaign(connection, id)
             rows.require_whole(stored)
             chosen = [file for file in stored.files if file.path in names]
-            return stored, {
-                file.path: checked_bytes(file, rows.stored_chunks(connection, file.sha256)) for file in chosen
-            }
+            contents = ((file, rows.stored_chunks(connection, file.sha256)) for file in chosen)
+            return stored, {file.path: checked_bytes(file, pieces) for file, pieces in contents}
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Search for damage: checks of the database, hashes of all files, ids of all campaigns; () without damage."""
@@ -245,7 +231,7 @@ def _hashed_files(
     files, done = [], 0
     for path, (expected_size, _) in states.items():
         digest, size = hashlib.sha256(), 0
-        for piece in read_chunks(folder / path, CHUNK_BYTES):
+        for piece in campaign_folder.read_chunks(folder / path, CHUNK_BYTES):
             digest.update(piece)
             size += len(piece)
             progress(done + size)

@@ -113,7 +113,13 @@ class Finding:
 
 def find_entry_damage(connection: Connection) -> Iterator[Finding]:
     """Search for damaged journal entries; they are read as bytes, so that invalid text is found, too."""
-    rows = list(_rows_as_bytes(connection))
+    columns = journal_entry.c
+    if is_file(connection):
+        query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
+    else:
+        query = select(*columns)  # a server has only valid text
+    found = connection.execute(query.order_by(columns.sequence)).mappings().all()
+    rows: list[_Row] = [{str(name): as_bytes(value) for name, value in row.items()} for row in found]
     places = {row["sequence"]: row["position"] for row in rows}
     for row in rows:
         position = _utf8(row["position"] if row["about"] is None else places.get(row["about"]))
@@ -124,17 +130,6 @@ def find_entry_damage(connection: Connection) -> Iterator[Finding]:
         if what:
             message = f"{place}entry {_utf8(row['sequence'])}: {what}; put a backup in its place"
             yield Finding(_utf8(row["journal_id"]), _utf8(row["file"]) or None, message)
-
-
-def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
-    """All journal entries by sequence, with values as bytes: invalid text does not stop the check."""
-    columns = journal_entry.c
-    if is_file(connection):
-        query = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
-    else:
-        query = select(*columns)  # a server has only valid text
-    for row in connection.execute(query.order_by(columns.sequence)).mappings().all():
-        yield {str(name): as_bytes(value) for name, value in row.items()}
 
 
 def _entry_damage(connection: Connection, row: _Row) -> str:
