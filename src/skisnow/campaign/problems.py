@@ -69,9 +69,7 @@ class Problem:
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Fields of the problem by name, as in the JSON of ``skisnow check --json``."""
-        entry = asdict(self)
-        del entry["needs_action"]
-        return entry
+        return {name: value for name, value in asdict(self).items() if name != "needs_action"}
 
 
 error: Final = partial(Problem, "error")

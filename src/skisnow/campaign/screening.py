@@ -230,11 +230,9 @@ def _flag(
     campaign: Campaign, code: str, file: str, row: int, experiment: str, value: str | None, **fields: object
 ) -> Problem:
     """Problem of severity ``flag`` for an experiment; `fields` fill the template of the allowed values."""
-    action = (
-        Message("The experiment is kept and counted, but not included in the estimates.")
-        if code in campaign.excluding
-        else Message("The experiment is only flagged and included in the estimates; look at it.")
-    )
+    action = Message("The experiment is only flagged and included in the estimates; look at it.")
+    if code in campaign.excluding:
+        action = Message("The experiment is kept and counted, but not included in the estimates.")
     allowed = Message(
         _ALLOWED[code],
         fewest_loads=problems.FEWEST_LOADS,

@@ -76,9 +76,7 @@ class StationSeries(Shown):
 
     def at(self, moments: FloatArray, name: str, *, longest_gap: float) -> FloatArray:
         """A field at some times (s since 1970, UTC), linear between neighbours; NaN outside and over longer gaps."""
-        values = self.fields.get(name)
-        if values is None:
-            return np.full(len(moments), math.nan)
+        values = self.fields.get(name, np.full(len(self.time), math.nan))
         finite = np.isfinite(values)
         time, values = self.time[finite], values[finite]
         if not len(time):

@@ -147,13 +147,9 @@ def _require_plausible_header(file: str, header: dict[str, Any], size: int) -> N
                 high=high,
             )
             _refuse(file, f"{name} {header[name]:g}", allowed, "This is another kind of file, or a damaged one.")
-    needed = HEADER_BYTES + _SAMPLE_BYTES * header["samples"]
-    if size < needed:
-        allowed = Message(
-            "{needed} bytes or more for the {samples} samples that the header counts",
-            needed=needed,
-            samples=header["samples"],
-        )
+    counts = {"samples": header["samples"], "needed": HEADER_BYTES + _SAMPLE_BYTES * header["samples"]}
+    if size < counts["needed"]:
+        allowed = Message("{needed} bytes or more for the {samples} samples that the header counts", **counts)
         _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
 
 

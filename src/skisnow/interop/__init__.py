@@ -1,7 +1,5 @@
 """skisnow in other people's programs: files written for them and read from them."""
 
-from __future__ import annotations
-
 from .fmu import write_contact_fmu, write_sledge_fmu
 
 __all__ = ["write_contact_fmu", "write_sledge_fmu"]

@@ -74,11 +74,9 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     kinds = _kind_of_file(source), _kind_of_file(target)
     made = CONVERSIONS.get(kinds)
     if made is None:
+        known = "; ".join(f"{read} to {written}" for read, written in CONVERSIONS)
         raise ParameterError("{source} to {target} is not known. Known are {known}").tag(
-            "unknown_name",
-            source=kinds[0],
-            target=kinds[1],
-            known="; ".join(f"{read} to {written}" for read, written in CONVERSIONS),
+            "unknown_name", source=kinds[0], target=kinds[1], known=known
         )
     if source.resolve() == target.resolve():
         raise OutputError("{target} is the file that is read; give the new one another name").tag(

@@ -215,19 +215,13 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
     sides = SIDES if skis == len(SIDES) else ("ski",)
     runner = Runner.of(scenario.ski)
     contact = SnowContact(setup.snow, [runner] * skis, spacing=setup.numbers["line_spacing_m"])
-    dynamics, inputs = setup.dynamics, list[Variable]()
+    dynamics, inputs, outputs = setup.dynamics, list[Variable](), list[Variable]()
     for ski, side in zip(dynamics.body.skis, sides, strict=False):
         place = dynamics.position + dynamics.rotation @ ski.boot
         inputs += _pose_variables(f"{side}.", place, dynamics.rotation @ ski.axes.T)
-    outputs = [
-        variable
-        for side in sides
-        for name, unit, about in (
-            ("force", "N", "load of the snow on the ski"),
-            ("moment", "N.m", "load of the snow on the ski, about its boot"),
-        )
-        for variable in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
-    ]
+    for side in sides:
+        outputs += vector(f"{side}.force", "output", "N", "load of the snow on the ski", np.zeros(3))
+        outputs += vector(f"{side}.moment", "output", "N.m", "load of the snow on the ski, about its boot", np.zeros(3))
     variables = (TIME, *_snow_parameters(setup.snow), *inputs, *outputs)
     starts = np.array([variable.start for variable in variables])
     data = core.contact_data(setup.snow.compiled, contact.compiled, starts)
@@ -247,13 +241,11 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     setup = laid_out(scenario)
     _require_builtin_laws(setup.snow)
     dynamics, outputs = setup.dynamics, list[Variable]()
-    for name, unit, about, start in (
-        ("position", "m", "state of the middle between the boots", dynamics.position),
-        ("quaternion", "1", "w, x, y, z of the sledge's axes ahead, left, up", _quaternion(dynamics.rotation)),
-        ("velocity", "m/s", "state of the middle between the boots", np.zeros(3)),
-        ("angular_velocity", "rad/s", "of the sledge", np.zeros(3)),
-    ):
-        outputs += vector(name, "output", unit, about, start)
+    about = "w, x, y, z of the sledge's axes ahead, left, up"
+    outputs += vector("position", "output", "m", "state of the middle between the boots", dynamics.position)
+    outputs += vector("quaternion", "output", "1", about, _quaternion(dynamics.rotation))
+    outputs += vector("velocity", "output", "m/s", "state of the middle between the boots", np.zeros(3))
+    outputs += vector("angular_velocity", "output", "rad/s", "of the sledge", np.zeros(3))
     for side in SIDES:
         about = "load of the ski on its boot: ahead, left across the base, off the base"
         outputs += vector(f"{side}.boot_force", "output", "N", about, np.zeros(3))

@@ -169,11 +169,10 @@ class SnowForces:
                 "unknown_name", name=sites[self._sites.index(-1)], known=known or "-"
             )
         self.model, self.contact = model, contact
-        self._fresh, self._accepted = contact.state(), None
+        self._fresh = contact.state()
+        self._accepted: float | None = None
         self.wrench: FloatArray = np.zeros((len(sites), 6))
         """Force (N) and moment (N m) of the snow about each site, in the world's axes, at the last call."""
-
-    _accepted: float | None
 
     def __call__(self, model: Any, data: Any) -> None:
         """Add the forces at the present pose to the passive ones; a pose at a new time enters the snow's history."""

@@ -262,18 +262,12 @@ def _make_slot(owner: type, field: Field[Any]) -> _Slot:
         for declaration in inside
         if isinstance(declaration, type) and is_dataclass(declaration) and quantities(declaration)
     )
-    return _Slot(
-        field,
-        tuple(
-            declaration
-            if isinstance(declaration, Word)
-            else _completed_quantity(declaration, marks, field, members, needed)
-            for declaration in declared
-        ),
-        parts,
-        section._replace(otherwise=section.otherwise or otherwise),
-        NoneType in members,
+    own = tuple(
+        mark if isinstance(mark, Word) else _completed_quantity(mark, marks, field, members, needed)
+        for mark in declared
     )
+    section = section._replace(otherwise=section.otherwise or otherwise)
+    return _Slot(field, own, parts, section, NoneType in members)
 
 
 _KINDS: Final[dict[Any, Kind]] = {

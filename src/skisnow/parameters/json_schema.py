@@ -41,14 +41,13 @@ def schema_of(quantity: Quantity) -> Schema:
 
 def table_schema(quantities: Iterable[Quantity]) -> Schema:
     """JSON Schema of a table of an input file: allowed keys with their values, and required keys."""
-    listed = list(quantities)
-    own = [quantity.name.rpartition(".")[2] for quantity in listed]
-    needed = [name for name, quantity in zip(own, listed, strict=True) if quantity.needed]
+    by_key = {quantity.name.rpartition(".")[2]: quantity for quantity in quantities}
+    needed = [key for key, quantity in by_key.items() if quantity.needed]
     return {
         "type": "object",
         "additionalProperties": False,
         **({"required": needed} if needed else {}),
-        "properties": {name: schema_of(quantity) for name, quantity in zip(own, listed, strict=True)},
+        "properties": {key: schema_of(quantity) for key, quantity in by_key.items()},
     }
 
 

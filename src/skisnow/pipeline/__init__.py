@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from .._support.errors import ParameterError, require_range
 from .._support.messages import Message
 from .._support.processes.batch import run_batch, worker_count
+from .._support.processes.kept_rows import Row
 from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
 from ..estimation.parts import site_of_campaign
@@ -27,9 +28,6 @@ from ..simulation.simulated_run import simulate
 from ..simulation.verification import NUDGED, limit_sentences, nudged_scenarios
 from ..ski import Ski
 from ..snow.mean_snow import drawn_snows, measured_intervals, no_used_experiment, site_in_words
-
-if TYPE_CHECKING:
-    from .._support.processes.kept_rows import Row
 
 UNLOADING_RATIO: Final = 10.0
 """k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import OutputError
 from .._support.staging import require_writable, staged, write_file
 from .._support.units import DEGREE, STANDARD_GRAVITY
@@ -17,15 +19,10 @@ from ..campaign import write_reference
 from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
 from ..interop.caaml import caaml_text
 from ..scenario import Plane, load_scenario
+from ..simulation import Run
 from ..simulation.simulated_run import simulate
 from ..track.projection import GeodeticPoint, east_north_up_axes, geodetic
 from ..track.slope_frame import slope_axes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from .._support.arrays import FloatArray
-    from ..simulation import Run
 
 ORIGIN: Final = GeodeticPoint(47.1234, 11.4321, 1900.0)
 AZIMUTH_DEG: Final = 140.0
@@ -258,8 +255,9 @@ mass_kg = 95
 
 def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
     """Name and content of the samples that need a simulated run."""
-    usual = _simulate_sample()
-    other = _simulate_sample(speed_m_per_s=8.1, heading_deg=-25.0, mass_kg=95.0)
+    scenario = load_scenario(SCENARIO, changes={"solver.method": "fast"})
+    usual = simulate(scenario)
+    other = simulate(scenario.with_(speed_m_per_s=8.1, heading_deg=-25.0, mass_kg=95.0))
     mine = (files("skisnow.scenario") / "catalogue" / f"{SCENARIO}.toml").read_text("utf-8") + _MINE
     yield "mine.toml", mine
     yield "two-runs.toml", mine + _SECOND_RUN
@@ -270,11 +268,6 @@ def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
     yield "measured.gpx", _track_gpx(usual, random)
     yield "run-1.gpx", _track_gpx(usual, random)
     yield "run-2.gpx", _track_gpx(other, random)
-
-
-def _simulate_sample(**changes: float) -> Run:
-    """Fast run of the sample scenario with changes by key."""
-    return simulate(load_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
 
 
 def _track_gpx(run: Run, random: np.random.Generator) -> str:

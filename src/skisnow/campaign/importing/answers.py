@@ -216,11 +216,9 @@ class Dialogue:
         answer = key if option == "ignore" else f"{key}={proposed or 'ANSWER'}" if key else proposed or "ANSWER"
         text = f'--{option} "{answer}"'
         words = [IMPORT_OR_NOT.get(choice, choice) if key in {"hidden", "struck"} else choice for choice in choices]
-        action = (
-            Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=words)
-            if choices
-            else Message("State it in the file or by {option}.", option=text)
-        )
+        action = Message("State it in the file or by {option}.", option=text)
+        if choices:
+            action = Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=words)
         allowed = WORDS[key if option == "cells" else option]
         problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=allowed, action=action)
         self.open.append(Question(option, key, choices, proposed, problem))

@@ -18,7 +18,7 @@ from ..smet import CampaignWeather
 from ..snow_micro_pen import SnowMicroPenRecordings
 from . import campaign_files
 from .campaign_file import CAMPAIGN_FILE, CampaignFile, Description, read_campaign_file
-from .campaign_files import CampaignFiles, FilesInMemory, RawFiles
+from .campaign_files import ENDING, WEATHER_ENDING, CampaignFiles, FilesInMemory, RawFiles
 from .columns import Table
 from .corrections import corrections_by_file
 from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests, single_rows
@@ -39,11 +39,7 @@ class _ReadFiles(Container[str]):
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or "/" in name:
             return False
-        return (
-            name in CAMPAIGN_FILES
-            or name.lower().endswith((campaign_files.ENDING, campaign_files.WEATHER_ENDING))
-            or is_workbook(name)
-        )
+        return name in CAMPAIGN_FILES or name.lower().endswith((ENDING, WEATHER_ENDING)) or is_workbook(name)
 
 
 READ_FILES: Final = _ReadFiles()

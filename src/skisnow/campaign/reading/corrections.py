@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import TypeAlias
 
 from ..._support.messages import Message
@@ -33,18 +34,10 @@ class Correction(AppliedCorrection):
 
     def mismatch(self, column: str, value: str, allowed: str) -> Problem:
         """Error for a column of corrections.csv whose value in this correction does not match the raw file."""
-        return error(
-            "correction_mismatch",
-            CORRECTIONS.file,
-            row=self.line,
-            column=column,
-            experiment=self.experiment or None,
-            value=value,
-            allowed=allowed,
-            action=Message(
-                "Look at {file}, row {row}: put this correction right, or delete its row.", file=self.file, row=self.row
-            ),
-        )
+        mismatch = partial(error, "correction_mismatch", CORRECTIONS.file, row=self.line, column=column)
+        place = {"file": self.file, "row": self.row}
+        action = Message("Look at {file}, row {row}: put this correction right, or delete its row.", **place)
+        return mismatch(experiment=self.experiment or None, value=value, allowed=allowed, action=action)
 
 
 RowCorrections: TypeAlias = "Mapping[int, Sequence[Correction]]"
@@ -101,11 +94,9 @@ class Corrector:
     def finish(self) -> None:
         """Report corrections whose row is not in the file; call this after the last record."""
         for row, of_one_row in sorted(self._left.items()):
-            allowed = (
-                Message("a row of measurements; this is the header")
-                if row == self._header.row
-                else Message("a row of measurements; the file has no rows")
-            )
+            allowed = Message("a row of measurements; the file has no rows")
+            if row == self._header.row:
+                allowed = Message("a row of measurements; this is the header")
             self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
     def _correct_record(self, cells: list[str], correction: Correction) -> None:

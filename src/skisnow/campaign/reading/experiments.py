@@ -91,9 +91,9 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
     for row in blocks.start[~key.is_blank[blocks.start]].tolist():
         before = first_row.setdefault(int(key.code[row]), row)
         if before != row:
+            line = int(table.row[before])
             allowed = Message(
-                "each name for one experiment, its rows together; this one also begins in row {before}",
-                before=int(table.row[before]),
+                "each name for one experiment, its rows together; this one also begins in row {before}", before=line
             )
             action = Message("Rename one of the two, or bring the rows together.")
             yield table.error(row, "mixed_experiment", table.form.key, key[row], allowed, action)
@@ -131,12 +131,8 @@ def check_one_site(table: Table) -> Iterator[Problem]:
 
 def _mixed_error(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:
     """Error for a row whose `column` differs from that of the experiment's row `reference`."""
-    allowed = Message(
-        "one {column} in an experiment; row {row} has {other!r}",
-        column=column,
-        row=int(table.row[reference]),
-        other=other,
-    )
+    line = int(table.row[reference])
+    allowed = Message("one {column} in an experiment; row {row} has {other!r}", column=column, row=line, other=other)
     action = Message("Correct the cell, or give the rows that were another experiment another name.")
     return table.error(row, "mixed_experiment", column, value, allowed=allowed, action=action)
 
@@ -192,6 +188,9 @@ def shear_tests(table: Table) -> ShearTests:
     moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
     largest = blocks.first_chosen(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
     is_turned = ~np.isnan(angle)
+    turning = None
+    if is_turned.any():
+        turning = TurningReadings(blocks.first_of(is_turned), angle[is_turned] * DEGREE, moment[is_turned])
     return ShearTests(
         **_experiments(table, blocks, largest),
         penetration_depth=table.numbers["depth_mm"][largest] * MM,
@@ -199,9 +198,7 @@ def shear_tests(table: Table) -> ShearTests:
         moment=moment[largest],
         row=table.row[largest],
         further={name: tuple(cells[row] for row in largest.tolist()) for name, cells in table.further.items()},
-        turning=TurningReadings(blocks.first_of(is_turned), angle[is_turned] * DEGREE, moment[is_turned])
-        if is_turned.any()
-        else None,
+        turning=turning,
     )
 
 

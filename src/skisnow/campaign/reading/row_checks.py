@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -55,16 +56,11 @@ def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: f
     pairs = np.stack([blocks.of_row, names.code], axis=1)[unknown]
     _, first = np.unique(pairs, axis=0, return_index=True)
     for row in np.flatnonzero(unknown)[np.sort(first)].tolist():
-        allowed = (
-            Message("one of {names}", names=sorted(described_names))
-            if described_names
-            else Message("a {column} that {campaign_file} describes", column=column, campaign_file=CAMPAIGN_FILE)
-        )
-        action = Message(
-            "Correct the cell, or describe the {column} in {campaign_file} under [[{column}]].",
-            column=column,
-            campaign_file=CAMPAIGN_FILE,
-        )
+        words = {"column": column, "campaign_file": CAMPAIGN_FILE}
+        allowed = Message("a {column} that {campaign_file} describes", **words)
+        if described_names:
+            allowed = Message("one of {names}", names=sorted(described_names))
+        action = Message("Correct the cell, or describe the {column} in {campaign_file} under [[{column}]].", **words)
         yield table.error(row, f"unknown_{column}", column, names[row], allowed=allowed, action=action)
 
 
@@ -80,15 +76,10 @@ def _check_angles(table: Table, blocks: Blocks, described: CampaignFile | None) 
     angle = table.numbers[COLUMN]
     tilted = angle[angle > 0]
     if len(tilted) and float(tilted.max()) < SMALLEST_LIKELY_DEG:
-        yield warning(
-            "angles_look_like_radians",
-            table.form.file,
-            column=COLUMN,
-            value=f"{tilted.min():g} to {tilted.max():g}",
-            allowed=Message("degrees"),
-            action=Message("If these are radians multiply them by 57.29578; if they are degrees no action is needed."),
-        )
-
+        value, allowed = f"{tilted.min():g} to {tilted.max():g}", Message("degrees")
+        action = Message("If these are radians multiply them by 57.29578; if they are degrees no action is needed.")
+        radians = partial(warning, "angles_look_like_radians", table.form.file, column=COLUMN)
+        yield radians(value=value, allowed=allowed, action=action)
     if table.form != PENETRATION:
         return
     for row in _once_per_block(angle > STEEPEST_MEASURED_DEG, blocks):
@@ -215,7 +206,15 @@ def _check_likely_units(table: Table) -> Iterator[Problem]:
             ratio = values[above_zero] / middle
             far = above_zero[(ratio > FAR) | (ratio < 1.0 / FAR)]
             if len(far):
-                yield _warn_of_rows(table, name, likely, middle, far.tolist())
+                value = values[far[0]]
+                more = f", and {len(far) - 1} more like it" if len(far) > 1 else ""
+                words = {"unit": likely.unit, "far": FAR, "middle": middle}
+                allowed = Message(
+                    "numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}", **words
+                )
+                other = likely.if_low if value < middle else likely.if_high
+                action = Message("Look whether this is {value} or a slip of the pen.", value=other)
+                yield table.warning(int(far[0]), "unlikely_unit", name, f"{value:g}{more}", allowed, action)
 
 
 def _median(table: Table, name: str) -> float | None:
@@ -223,17 +222,6 @@ def _median(table: Table, name: str) -> float | None:
     values = table.numbers.get(name, np.zeros(0))
     above_zero = values[values > 0]
     return float(np.median(above_zero)) if len(above_zero) else None
-
-
-def _warn_of_rows(table: Table, name: str, likely: LikelyColumn, middle: float, rows: list[int]) -> Problem:
-    """Warning for the first of some rows that are far from the column's median, with the number of others."""
-    value = table.numbers[name][rows[0]]
-    more = f", and {len(rows) - 1} more like it" if len(rows) > 1 else ""
-    words = {"unit": likely.unit, "far": FAR, "middle": middle}
-    allowed = Message("numbers in {unit}, within a factor {far:g} of the column's median of {middle:g}", **words)
-    other = likely.if_low if value < middle else likely.if_high
-    action = Message("Look whether this is {value} or a slip of the pen.", value=other)
-    return table.warning(rows[0], "unlikely_unit", name, f"{value:g}{more}", allowed, action)
 
 
 LARGEST_LOAD: Final = 80.0
@@ -252,12 +240,17 @@ def _check_missing_units(table: Table, described: CampaignFile | None) -> Iterat
     """Errors for columns whose heading states no unit and whose numbers suggest another unit."""
     if table.form == PENETRATION:
         yield from _loads_and_depths_of_tools(table, described)
-    if table.form == SHEAR and "lever_arm_mm" in table.unstated:
-        yield from _lever_arms(table)
+    if table.form == SHEAR and "lever_arm_mm" in table.unstated:  # above 5 m in mm, or torque wrenches in cm or m
+        arm = table.numbers["lever_arm_mm"]
+        rows = np.flatnonzero(np.isfinite(arm)).tolist()
+        middle, longest = (np.median(arm[rows]), arm[rows].max()) if rows else (SHORTEST_LEVER_ARM, 0.0)
+        if middle < SHORTEST_LEVER_ARM or longest > LONGEST_LEVER_ARM:
+            unit = "µm" if longest > LONGEST_LEVER_ARM else "m" if middle < _METRES else "cm"
+            yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", unit, rows[0])
     for name in table.unstated:
-        middle = _median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
-        if middle is not None and (unit := LIKELY[name].other_unit(middle)):
-            yield _missing_unit(table, name, f"with a median of {middle:g}", unit.split(" or ", 1)[0])
+        median = _median(table, name) if name in LIKELY and name != "lever_arm_mm" else None
+        if median is not None and (other := LIKELY[name].other_unit(median)):
+            yield _missing_unit(table, name, f"with a median of {median:g}", other.split(" or ", 1)[0])
 
 
 def _loads_and_depths_of_tools(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
@@ -299,28 +292,14 @@ def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
     return list(largest.values()) or list(rows[:1])
 
 
-def _lever_arms(table: Table) -> Iterator[Problem]:
-    """An error for lever arms above 5 m in mm, or of the size of torque wrenches in cm or m."""
-    arm = table.numbers["lever_arm_mm"]
-    rows = np.flatnonzero(np.isfinite(arm)).tolist()
-    if not rows:
-        return
-    middle, longest = float(np.median(arm[rows])), float(arm[rows].max())
-    if middle < SHORTEST_LEVER_ARM or longest > LONGEST_LEVER_ARM:
-        unit = "µm" if longest > LONGEST_LEVER_ARM else "m" if middle < _METRES else "cm"
-        yield _missing_unit(table, "lever_arm_mm", f"{arm[rows].min():g} to {longest:g}", unit, rows[0])
-
-
 def _missing_unit(table: Table, column: str, values: str, unit: str, row: int = 0) -> Problem:
     """Error for a column whose unit is not stated, with the likely unit and where to write it."""
     heading = table.unstated[column]
-    line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
     allowed = Message("numbers whose unit is stated")
+    words = {"heading": heading, "unit": unit, "line": f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'}
     action = Message(
         "They look like {unit}. State the unit: in the heading, such as {heading} [{unit}], or at the top of "
         "campaign.toml, such as {line}.",
-        heading=heading,
-        unit=unit,
-        line=line,
+        **words,
     )
     return table.error(row, "unit_missing", column, f"{heading}: {values}", allowed=allowed, action=action)

@@ -10,9 +10,8 @@ at varied angle, the others at 90°, there with densities of 420-740 kg/m³ and 
 and penetration tests at two sites; Eqns 13 and 14 with their rmse.
 
 Modelling assumption: all else, namely the sites and how many tests each has, evenly spaced loads, which angles, the
-hard snow's
-0.25 N/mm² and its scatter, plate length, lever arm, depths and the largest moment of a person, densities and drop-cone
-depths of each site and their scatter, and that the pairs are among the tests at 90°.
+hard snow's 0.25 N/mm² and its scatter, plate length, lever arm, depths and the largest moment of a person, densities
+and drop-cone depths of each site and their scatter, and that the pairs are among the tests at 90°.
 """
 
 from __future__ import annotations

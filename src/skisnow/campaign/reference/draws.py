@@ -47,16 +47,8 @@ def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> Floa
 
 def edge_angle(generator: np.random.Generator, snow_hardness: FloatArray) -> FloatArray:
     """Edge angle (rad) of each series: the planned one, or a random one if the flat tool would stay too shallow."""
-    planned = (
-        np.array(
-            [
-                design.EDGE_ANGLES_DEG[index % len(design.EDGE_ANGLES_DEG)]  # in turn within each site
-                for site in design.PENETRATION_SITES
-                for index in range(site.tests)
-            ]
-        )
-        * DEGREE
-    )
+    in_turn = [np.resize(design.EDGE_ANGLES_DEG, site.tests) for site in design.PENETRATION_SITES]
+    planned = np.concatenate(in_turn) * DEGREE
     others = np.array([angle for angle in design.EDGE_ANGLES_DEG if angle > 0]) * DEGREE
     instead = others[generator.integers(len(others), size=planned.size)]
     return np.where((planned == 0) & (snow_hardness >= design.FLAT_LIMIT), instead, planned)

@@ -65,16 +65,9 @@ class ReplayedTest:
 
     def row_under(self, load: str, branch: str = "") -> Reading | None:
         """Reading of a series under a load (N), of the loading or the unloading branch; None without one."""
-        taken_off = is_unloading_cell(branch)
-        return next(
-            (
-                row
-                for row in self.rows
-                if float(row.cells["load_N"]) == float(load)
-                and is_unloading_cell(row.cells.get(BRANCH, "")) == taken_off
-            ),
-            None,
-        )
+        under_load = (row for row in self.rows if float(row.cells["load_N"]) == float(load))
+        unloading = is_unloading_cell(branch)
+        return next((row for row in under_load if is_unloading_cell(row.cells.get(BRANCH, "")) == unloading), None)
 
     @property
     def next_position(self) -> int:

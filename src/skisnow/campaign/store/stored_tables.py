@@ -14,7 +14,6 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
 from ..._support.spreadsheet_text import number
 from ..._support.user_files import natural_number
-from ...parameters import Quantity
 from ..reading.campaign import read_description
 from ..reading.campaign_files import CampaignFiles, RawFiles
 from ..reading.header import split_header
@@ -141,7 +140,16 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
     text = typed.strip()
     rule = next((rule for rule in form.numbers if rule.name == column), None)
     if rule is not None:
-        return _checked_number_text(rule, text, conversion or UnitConversion(column))
+        if not text and not rule.needed:
+            return ""
+        text, unit = text.replace("−", "-"), conversion or UnitConversion(column)
+        value = number(text, "," if "," in text and "." not in text else ".")
+        if math.isnan(value) or bool(rule.outside(unit.convert(np.array([value])))[0]):
+            ends = (rule.lowest, rule.highest)
+            low, high = (unit.revert(limit) if math.isfinite(limit) else limit for limit in ends)
+            fix = Message("Enter {allowed}.", allowed=allowed_words(replace(rule, lowest=low, highest=high)))
+            raise CellError("not_allowed" if text else "empty", column, text, fix)
+        return text.replace(",", ".")
     if column == BRANCH and text.casefold() not in BRANCHES:
         raise CellError("not_allowed", column, text, BRANCH_WORD)
     if not text and column in form.names:
@@ -149,18 +157,3 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
     if len(text) > LONGEST_TEXT or not all(letter.isprintable() for letter in text):
         raise CellError("too_long", column, text, SHORT_LINE)
     return text
-
-
-def _checked_number_text(rule: Quantity, text: str, conversion: UnitConversion) -> str:
-    """Entered number with a decimal point; CellError if it is missing, not a number or out of limits."""
-    if not text and not rule.needed:
-        return ""
-    text = text.replace("−", "-")
-    mark = "," if "," in text and "." not in text else "."
-    value = number(text, mark)
-    if math.isnan(value) or bool(rule.outside(conversion.convert(np.array([value])))[0]):
-        ends = (rule.lowest, rule.highest)
-        low, high = (conversion.revert(limit) if math.isfinite(limit) else limit for limit in ends)
-        fix = Message("Enter {allowed}.", allowed=allowed_words(replace(rule, lowest=low, highest=high)))
-        raise CellError("not_allowed" if text else "empty", rule.name, text, fix)
-    return text.replace(",", ".")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from sqlalchemy import Connection, LargeBinary, cast, select
 from sqlalchemy.exc import DatabaseError, NoResultFound
@@ -17,10 +18,7 @@ from .rows import is_sound, stored_campaign
 from .schema import campaign, campaign_file, content, journal_entry
 from .server import broken_references
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    _Row: TypeAlias = Mapping[str, bytes | None]
+_Row: TypeAlias = Mapping[str, bytes | None]
 
 
 def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:

@@ -6,17 +6,13 @@ skisnow runs them itself and reads no ``alembic.ini`` of the working directory.
 from __future__ import annotations
 
 from threading import Lock
-from typing import TYPE_CHECKING
 
 from alembic import command
 from alembic.config import Config
 from alembic.script import ScriptDirectory
-from sqlalchemy import inspect
+from sqlalchemy import Connection, inspect
 
 from ..schema import APPLICATION_ID, campaign, metadata
-
-if TYPE_CHECKING:
-    from sqlalchemy import Connection
 
 _ALEMBIC = Lock()  # alembic keeps the running migration in module-level proxies: one at a time in a process
 

@@ -17,7 +17,6 @@ depends_on = None
 
 def upgrade() -> None:
     """Do nothing: this revision is the schema that a new store has."""
-    pass
 
 
 def downgrade() -> None:
