@@ -97,8 +97,9 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
             kept = Message("The column is kept as text and not interpreted.")
             action = joined([kept, _advise_mapping(name, near[0])])
         allowed = Message("the columns {known}", known=list(form.known))
-        note = unknown_column(column=name, value=name, allowed=allowed, action=action, needs_action=bool(near))
-        problems.append(note)
+        problems.append(
+            unknown_column(column=name, value=name, allowed=allowed, action=action, needs_action=bool(near))
+        )
     return problems
 
 

@@ -16,9 +16,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, Protocol, TypeAlias
 
-from sqlalchemy import ColumnElement, Connection, RowMapping, Select, and_, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Engine, RowMapping, Select, and_, func, insert, select
 from sqlalchemy.exc import DatabaseError
 
 from ..._support.errors import ParameterError, StoreError
@@ -27,9 +27,7 @@ from ..._support.user_files import json_value, toml_values
 from .engine import database_errors, reading, savepoint, writing
 from .rows import TIME, damage_error, entry_damage_error, require_type
 from .schema import campaign, journal, journal_entry
-
-if TYPE_CHECKING:
-    from .store import Store
+from .server import StorePlace
 
 Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
 
@@ -215,10 +213,17 @@ class JournalHead:
     last_at: str
 
 
+class OpenStore(Protocol):
+    """Parts of an open `Store` that its journals use: its place, and the connections to its database."""
+
+    path: StorePlace
+    engine: Engine
+
+
 class Journals:
     """Reads and writes the journals of a store: append-only lists of changes to its campaigns."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: OpenStore) -> None:
         self._engine = store.engine
         self._path = store.path
 
