@@ -80,7 +80,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
         for name in repeated
     ]
     missing_column = partial(error, "missing_column", form.file, row=header.row)
-    unknown_column = partial(warning, "unknown_column", form.file, row=header.row)
+    kept_as_text = partial(warning, "unknown_column", form.file, row=header.row)
     as_written = {heading.lower(): heading for heading in unknown}
     likely = {column: heading for heading, column in headings.columns_by_synonym(form, unknown).items()}
     for name in missing:
@@ -97,9 +97,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
             kept = Message("The column is kept as text and not interpreted.")
             action = joined([kept, _advise_mapping(name, near[0])])
         allowed = Message("the columns {known}", known=list(form.known))
-        problems.append(
-            unknown_column(column=name, value=name, allowed=allowed, action=action, needs_action=bool(near))
-        )
+        problems.append(kept_as_text(column=name, value=name, allowed=allowed, action=action, needs_action=bool(near)))
     return problems
 
 
