@@ -14,7 +14,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import FloatArray, content_bytes
+from .._support.arrays import content_bytes
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
@@ -268,7 +268,15 @@ def move_to_scenario_frame(
     if parsed.latitude_deg is not None and parsed.longitude_deg is not None and track.origin is not None:
         height = track.origin.height if parsed.height_m is None else parsed.height_m
         point = GeodeticPoint(parsed.latitude_deg, parsed.longitude_deg, height)
-        origin, beginning, method = _place_of(point, track), np.zeros(3), f"tracks are counted from the site at {point}"
+        coordinates = np.array([[point.latitude_deg, point.longitude_deg, point.height]])
+        origin = east_north_up(coordinates, origin=track.origin)[0]
+        distance = math.hypot(origin[0], origin[1])
+        if distance > FARTHEST:
+            raise ParameterError(
+                "{name} is {distance:.4g} km from the site of [identify.site]. It is from another place, or latitude "
+                "and longitude are swapped"
+            ).tag("far_from_site", name=track.name, distance=distance / 1000.0)
+        beginning, method = np.zeros(3), f"tracks are counted from the site at {point}"
     else:
         origin = np.nan_to_num(track.place[int(np.argmax(track.usable))])
         start = scenario.scenario.start
@@ -288,19 +296,6 @@ _START_OF_FIRST_POINT: Final = Message(
     "The first point of each track is taken as the scenario's start. Its error is in all points, and no interval "
     "counts it. Add start.x,start.y to --free, or give the place of the slope in [identify.site]."
 )
-
-
-def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
-    """Place (3,) of the site in the track's frame (m)."""
-    assert track.origin is not None
-    at = east_north_up(np.array([[point.latitude_deg, point.longitude_deg, point.height]]), origin=track.origin)[0]
-    distance = math.hypot(at[0], at[1])
-    if distance > FARTHEST:
-        raise ParameterError(
-            "{name} is {distance:.4g} km from the site of [identify.site]. It is from another place, or latitude and "
-            "longitude are swapped"
-        ).tag("far_from_site", name=track.name, distance=distance / 1000.0)
-    return at
 
 
 def _read_site(site: Mapping[str, Any]) -> Site:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -27,13 +27,13 @@ from .parameter import parameter_table
 from .photo_cell_times import PhotoCellTimes
 from .problem import Kind, Observations, Problem, expand_keys
 from .result import Identification
+from .search import Progress
 from .simulations import RunSimulation, Simulations
 from .solution import BootstrapBy, SearchRequest, too_few_points
 from .solving import solve
 from .track_positions import TrackPositions
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
-Progress = Callable[[str], None]
 
 
 def identify(
@@ -174,16 +174,9 @@ def identify(
             result = too_few_points(problem, request)
         else:
             result = solve(problem, request)
-        return replace(
-            result,
-            data=measurements.descriptions,
-            effort=replace(
-                result.effort,
-                simulations=simulations.computed,
-                kept_simulations=simulations.restored,
-                wall_s=time.monotonic() - begun,
-            ),
-        )
+        effort = replace(result.effort, simulations=simulations.computed, kept_simulations=simulations.restored)
+        effort = replace(effort, wall_s=time.monotonic() - begun)
+        return replace(result, data=measurements.descriptions, effort=effort)
 
 
 _KINDS: Final[dict[Kind, Message]] = {

@@ -55,12 +55,8 @@ def add_profile_intervals(identification: Identification, solution: Solution, pl
         low, high = (None if end is None else parameter.value(end) for end in ends)
         parameters[j] = replace(parameters[j], profile_interval=(low, high))
     method = Message("profiles: others refitted by {refits} Gauss-Newton steps at each value", refits=REFITS)
-    return replace(
-        identification,
-        profiles=tuple(profiles),
-        parameters=tuple(parameters),
-        methods=(*identification.methods, method),
-    )
+    methods = (*identification.methods, method)
+    return replace(identification, profiles=tuple(profiles), parameters=tuple(parameters), methods=methods)
 
 
 def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
@@ -253,9 +249,11 @@ def add_bootstrap_intervals(identification: Identification, solution: Solution, 
         _refit_samples(solution, samples, plan.progress)
         lost = sum(not np.isfinite(sample.cost) for sample in samples)
         samples = [sample for sample in samples if np.isfinite(sample.cost)]
-    warnings = (f"{lost} of {plan.bootstrap} resamples of the bootstrap could not be computed",) if lost else ()
+    if lost:
+        warning = f"{lost} of {plan.bootstrap} resamples of the bootstrap could not be computed"
+        identification = replace(identification, warnings=(*identification.warnings, warning))
     if len(samples) < FEWEST:
-        return replace(identification, warnings=(*identification.warnings, *warnings))
+        return identification
     values = values_at(solution, np.array([sample.best for sample in samples]))
     parameters = tuple(
         parameter
@@ -267,13 +265,8 @@ def add_bootstrap_intervals(identification: Identification, solution: Solution, 
     method = Message(
         "bootstrap: {n_samples} resamples of stretches of residuals, each {how}", n_samples=len(samples), how=how
     )
-    return replace(
-        identification,
-        bootstrap=values,
-        parameters=parameters,
-        warnings=(*identification.warnings, *warnings),
-        methods=(*identification.methods, method),
-    )
+    methods = (*identification.methods, method)
+    return replace(identification, bootstrap=values, parameters=parameters, methods=methods)
 
 
 def _begin(solution: Solution, plan: SearchRequest) -> Iterator[tuple[FloatArray, FloatArray]]:

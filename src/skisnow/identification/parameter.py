@@ -76,15 +76,8 @@ class Parameter:
             (mean is not None and not math.isfinite(mean), _PRIOR_MEAN, "not_a_number"),
         ):
             if is_wrong:
-                unit = f" {self.unit}" if self.unit else ""
-                own = {
-                    "key": self.key,
-                    "unit": unit,
-                    "name": bad,
-                    "value": numbers.get(bad),
-                    "missing": "".join(missing),
-                }
-                raise ParameterError(problem).tag(code, **own, **numbers, **stated)
+                own = {"key": self.key, "unit": f" {self.unit}".rstrip(), "name": bad, "value": numbers.get(bad)}
+                raise ParameterError(problem).tag(code, **own, missing="".join(missing), **numbers, **stated)
 
     def scaled(self, value: float) -> float:
         """The value on the scale of the search: 0 at the start, 1 at one `size` from it."""

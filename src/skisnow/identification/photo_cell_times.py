@@ -58,17 +58,12 @@ class PhotoCellTimes:
                 "{name}: some runs state time_sd_s and some do not; write it for all of them, or for none"
             ).tag("partial_accuracy", name=self.cells.name)
         for run in self.cells.runs:
-            if run.station[-1] > self._line.length:
+            last, length = run.station[-1], self._line.length
+            if last > length:
                 raise ParameterError(
                     "{name}, run {run}: station {station:g} m is beyond the end of the profile, {length:.4g} m from "
                     "the start. Is it the right slope?"
-                ).tag(
-                    "out_of_range",
-                    name=self.cells.name,
-                    run=run.name,
-                    station=run.station[-1],
-                    length=self._line.length,
-                )
+                ).tag("out_of_range", name=self.cells.name, run=run.name, station=last, length=length)
         self.series = tuple(len(self._cells_after_start(run)[0]) for run in self.cells.runs)
         self.points = sum(self.series)
         self.nuisances = len(self.cells.runs) if self.clock_is_free else 0

@@ -174,15 +174,8 @@ class Identification(Shown):
     def _repr_facts(self) -> Facts:
         """Title with outcome, scenario and number of points, and a row for each parameter."""
         rows = tuple((identified.parameter.key, identified.in_words) for identified in self.parameters)
-        return Facts(
-            Message(
-                "{outcome}: {scenario}, {points} points",
-                outcome=self.outcome.replace("_", " "),
-                scenario=self.scenario,
-                points=self.points,
-            ),
-            rows,
-        )
+        fields = {"outcome": self.outcome.replace("_", " "), "scenario": self.scenario, "points": self.points}
+        return Facts(Message("{outcome}: {scenario}, {points} points", **fields), rows)
 
     @property
     def values(self) -> dict[str, float | None]:
@@ -210,9 +203,7 @@ def identification_dict(identification: Identification, *, files: Iterable[Path]
         "schema_version": 1,
         "outcome": identification.outcome,
         "reason": identification.reason,
-        "parameters": {
-            identified.parameter.key: _parameter_dict(identified) for identified in identification.parameters
-        },
+        "parameters": dict(zip(keys, map(_parameter_dict, identification.parameters), strict=True)),
         "correlation": {
             key: {other: json_number(identification.correlation[i, j]) for j, other in enumerate(keys)}
             for i, key in enumerate(keys)

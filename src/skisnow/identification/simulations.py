@@ -7,8 +7,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
-from types import TracebackType
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -71,11 +70,9 @@ class Simulations(AbstractContextManager["Simulations"]):
             self.progress(self.computed)
         return [self.stored.row(number) for number in numbers]
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: Any) -> None:
         """End the processes."""
-        self._pool.__exit__(kind, error, trace)
+        self._pool.__exit__(*error)
         self.stored.close()
 
 

@@ -74,13 +74,10 @@ class Solution:
     def widening(self) -> float:
         """Factor by which intervals are widened: √(χ² per degree of freedom) if significantly above 1, otherwise 1."""
         dof = self.degrees_of_freedom
-        if (
-            not self.problem.accuracy_is_stated
-            or dof < 1
-            or chi2.sf(self.optimum.cost, dof) > NOISE_MISMATCH_PROBABILITY
-        ):
+        if not self.problem.accuracy_is_stated or dof < 1:
             return 1.0
-        return float(np.sqrt(self.optimum.cost / dof))
+        agrees = chi2.sf(self.optimum.cost, dof) > NOISE_MISMATCH_PROBABILITY
+        return 1.0 if agrees else float(np.sqrt(self.optimum.cost / dof))
 
     @property
     def estimates_noise(self) -> bool:
@@ -106,16 +103,17 @@ def build_identification(solution: Solution, plan: SearchRequest) -> Identificat
     observed = () if outcome == "interrupted" else problem.observations
     p = len(problem.parameters)
     slope = np.array([parameter.slope(values[parameter.key]) for parameter in problem.parameters])
-    with np.errstate(invalid="ignore"):
-        covariance = (
-            np.full((p, p), np.nan) if uncertainty is None else uncertainty.covariance * slope[:, None] * slope[None, :]
-        )
+    correlation = covariance = np.full((p, p), np.nan)
+    if uncertainty is not None:
+        correlation = uncertainty.correlation
+        with np.errstate(invalid="ignore"):
+            covariance = uncertainty.covariance * slope[:, None] * slope[None, :]
     return Identification(
         outcome=outcome,
         reason=REASONS[outcome],
         scenario=plan.title,
         parameters=tuple(_identified_parameters(solution, uncertainty)),
-        correlation=np.full((p, p), np.nan) if uncertainty is None else uncertainty.correlation,
+        correlation=correlation,
         covariance=covariance,
         noise=tuple(noise * solution.widening for noise in problem.noise),
         accuracy_is_stated=problem.accuracy_is_stated,
@@ -260,18 +258,15 @@ def _interval_methods(solution: Solution) -> Iterator[str]:
     """Sentences about how the intervals were computed; none without derivatives."""
     if solution.optimum.jacobian is None:
         return
-    law = (
-        Message("Student's t with the noise that the residuals show")
-        if solution.estimates_noise
-        else Message("the normal distribution")
-    )
+    law = Message("the normal distribution")
+    if solution.estimates_noise:
+        law = Message("Student's t with the noise that the residuals show")
     stated = Message("stated by the data") if solution.problem.accuracy_is_stated else "estimated"
     yield Message(
         "95 % intervals from the curvature of the sum of squares, by {law}; accuracy {stated}", law=law, stated=stated
     )
-    several = len(solution.tried)
-    if several > 1:
-        yield f"{several} starts"
+    if len(solution.tried) > 1:
+        yield f"{len(solution.tried)} starts"
 
 
 def best_fit_residuals(solution: Solution) -> Callable[[Sequence[FloatArray]], list[FloatArray | None]]:

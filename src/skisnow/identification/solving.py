@@ -93,9 +93,12 @@ class Solver:
         )
 
     def _search_best_start(self) -> SearchState:
-        """Search from every start to its end; the final state with the lowest cost."""
+        """Search from the given start and from random ones about it; the final state with the lowest cost."""
+        lower, upper = bounds_of(self.problem.parameters)
+        size = (self.plan.starts - 1, len(lower))
+        others = self.plan.rng.uniform(np.maximum(lower, -1.0), np.minimum(upper, 1.0), size)  # up to one size off
         best: SearchState | None = None
-        for number, start in enumerate(self._run_starts()):
+        for number, start in enumerate([np.zeros(len(lower)), *others]):
             about = f"start {number + 1} of {self.plan.starts}: " if self.plan.starts > 1 else ""
             try:
                 state = self._make_search(self.problem, about).run(start)
@@ -116,13 +119,6 @@ class Solver:
             without = template("nothing can be computed at the start: no residuals")
             raise FitError(sentence if warnings else without).tag("no_residuals", warnings=warnings)
         return best
-
-    def _run_starts(self) -> list[FloatArray]:
-        """The given start, and others up to one size about it."""
-        lower, upper = bounds_of(self.problem.parameters)
-        p = len(lower)
-        others = self.plan.rng.uniform(np.maximum(lower, -1.0), np.minimum(upper, 1.0), (self.plan.starts - 1, p))
-        return [np.zeros(p), *others]
 
     def _with_noise(self, state: SearchState) -> SearchState:
         """Repeat the search with the noise estimated from its residuals, until that estimate is stable.

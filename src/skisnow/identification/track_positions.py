@@ -60,19 +60,13 @@ class TrackPoints:
         return float(np.sum(np.hypot(*np.diff(self.place, axis=0).T)))
 
 
-_NO_POINT: Final = {
-    True: template("{name} has no point that can be used: {flags}"),
-    False: template("{name} has no point that can be used: no places"),
-}
-
-
 def track_points(track: Track) -> TrackPoints:
     """Select the usable points of a track in the slope's frame."""
     use = track.usable
     if not use.any():
-        raise ParameterError(_NO_POINT[bool(track.flagged)]).tag(
-            "no_data", name=track.name, flags=str(dict(track.flagged))
-        )
+        without_places = template("{name} has no point that can be used: no places")
+        problem = template("{name} has no point that can be used: {flags}") if track.flagged else without_places
+        raise ParameterError(problem).tag("no_data", name=track.name, flags=str(dict(track.flagged)))
     time, place = track.time[use], track.place[use, :2]
     stated_sd = None if track.place_sd is None else track.place_sd[use, :2]
     stated = stated_sd is not None and bool(np.all(np.isfinite(stated_sd) & (stated_sd > 0.0)))
@@ -243,18 +237,12 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
     """Check the distance between a track's first point and the start; return a warning if the fixed start is off."""
     away = math.hypot(track.place[0, 0] - start[0], track.place[0, 1] - start[1])
     if away > max(FARTHEST_START, track.length):
+        distance, length = _distance_text(away), _distance_text(track.length)
         raise ParameterError(
             "{name} begins {distance} from the scenario's start (x = {start_x:g} m, y = {start_y:g} m) and is "
             "{length} long: it is of another place, or in another frame. Give x down the fall line and y to the left "
             "in m, from the slope's own origin, or set start.x_m and start.y_m"
-        ).tag(
-            "other_place",
-            name=track.name,
-            distance=_distance_text(away),
-            start_x=start[0],
-            start_y=start[1],
-            length=_distance_text(track.length),
-        )
+        ).tag("other_place", name=track.name, distance=distance, start_x=start[0], start_y=start[1], length=length)
     if away > NEAR_START and not start_is_free:
         return (
             f"{track.name} begins {away:.2g} m from the scenario's start, which is not free. Free start.x_m and "
@@ -265,7 +253,6 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
 
 def _distance_text(metres: float) -> Message:
     """Distance (m) as a text in m, or in km from 10 km."""
-    far = metres >= 10_000.0
-    return (
-        Message("{distance:.4g} km", distance=metres / 1000.0) if far else Message("{distance:.3g} m", distance=metres)
-    )
+    if metres >= 10_000.0:
+        return Message("{distance:.4g} km", distance=metres / 1000.0)
+    return Message("{distance:.3g} m", distance=metres)
