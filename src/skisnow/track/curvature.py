@@ -8,7 +8,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 from scipy.stats import norm
 
-from .._support.arrays import BoolArray, FloatArray, IntArray
+from .._support.arrays import FloatArray, IntArray
 from .._support.units import CONFIDENCE, ShownFields
 from .path_estimate import PathEstimate, estimate_path
 from .smoothing import SmoothedTrack, smooth_track
@@ -79,11 +79,12 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     computed = fitted if path is None else path.speed_at(np.maximum.accumulate(track.time))
     speed = np.where(np.isfinite(recorded), recorded, computed)
     arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source, path)
-    moving = _moving(smoothed, fitted)
+    with np.errstate(invalid="ignore"):  # points that move fast enough to have a heading
+        moving = (fitted >= LEAST_SPEED) & (fitted >= CERTAIN * np.sqrt(smoothed.covariance[:, 1, 1]))
     heading, heading_sd = np.full(len(fitted), np.nan), np.full(len(fitted), np.nan)
     heading[moving] = np.unwrap(np.arctan2(smoothed.velocity[moving, 1], smoothed.velocity[moving, 0]))
     heading_sd[moving] = np.sqrt(smoothed.covariance[moving, 1, 1]) / fitted[moving]
-    curvature, curvature_sd = _curvature(smoothed, fitted)
+    curvature, curvature_sd = _curvature(smoothed, np.where(moving, fitted, np.nan))
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = 1.0 / curvature
         radius_sd = np.where(curvature == 0.0, np.inf, curvature_sd / curvature**2)
@@ -188,16 +189,8 @@ def running_mean(time: FloatArray, values: FloatArray, window: float, segment: I
     return np.where(finite & (count > 0), mean, np.nan)
 
 
-def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> BoolArray:
-    """True (n,) for points that move fast enough to have a heading."""
-    error = np.sqrt(smoothed.covariance[:, 1, 1])
-    with np.errstate(invalid="ignore"):
-        return (fitted >= LEAST_SPEED) & (fitted >= CERTAIN * error)
-
-
-def _curvature(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """κ and its standard error to first order in the errors of velocity and acceleration."""
-    speed = np.where(_moving(smoothed, fitted), fitted, np.nan)
+def _curvature(smoothed: SmoothedTrack, speed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """κ and its standard error to first order in the errors of velocity and acceleration; NaN without a speed (m/s)."""
     (vx, vy), (ax, ay) = smoothed.velocity.T, smoothed.acceleration.T
     curvature = (vx * ay - vy * ax) / speed**3
     by_velocity = np.stack([ay, -ax]) / speed**3 - 3.0 * curvature * np.stack([vx, vy]) / speed**2

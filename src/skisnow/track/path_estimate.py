@@ -145,9 +145,20 @@ def estimate_path(time: FloatArray, place: FloatArray, part: IntArray, segment: 
     fits = min(_NODES_FITTED / nodes, _PARTS_FITTED / len(pieces))
     drawn = _draw_parameters(weighted, int(np.clip(fits, *_FITS)), samples, rng)
     samples_of_pieces = [_piece_samples(at, where, scales, drawn, rng) for at, where in pieces]
-    if any(piece is None for piece in samples_of_pieces):
+    drawn_pieces = [piece for piece in samples_of_pieces if piece is not None]
+    if len(drawn_pieces) < len(pieces):
         return None
-    return _join(time, place, part, segment, [piece for piece in samples_of_pieces if piece is not None])
+    node_times = np.concatenate([at for at, _ in drawn_pieces])
+    step = np.diff(node_times)
+    step[np.cumsum([len(at) for at, _ in drawn_pieces])[:-1] - 1] = 0.0
+    across = np.zeros(len(step))  # straight lines over the gaps between the parts
+    height = np.where(np.isfinite(place[:, 2]), place[:, 2], 0.0)
+    lengths = np.linalg.norm(np.diff(np.column_stack([place[:, :2], height]), axis=0), axis=1)
+    for gap in np.flatnonzero((np.diff(part) != 0) & (np.diff(segment) == 0)):
+        before = min(max(int(np.searchsorted(node_times, time[gap] + 1e-9)) - 1, 0), len(across) - 1)
+        across[before] += lengths[gap]
+    speed = np.concatenate([of_piece for _, of_piece in drawn_pieces], axis=1)
+    return PathEstimate(node_times, step, speed, _vertical_speed(time, place[:, 2], part, node_times), across)
 
 
 def _average_close_points(time: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -234,29 +245,6 @@ def _samples(fit: PathFit, count: int, rng: np.random.Generator) -> FloatSamples
     longer = np.minimum(change[:, _HEADING].T ** 2, 1.0) @ moving / (2.0 * max(float(np.sum(moving)), 1e-9))
     forward = np.where(speed < 0.0, -1.0, 1.0)
     return np.asarray(forward * (speed + change[:, _SPEED].T) * (1.0 + longer[:, None]), dtype=np.float32)
-
-
-def _join(
-    time: FloatArray,
-    place: FloatArray,
-    part: IntArray,
-    segment: IntArray,
-    pieces: list[tuple[FloatArray, FloatSamples]],
-) -> PathEstimate:
-    """Estimate of the whole track from its parts, with straight lines over the gaps between them."""
-    nodes = np.concatenate([at for at, _ in pieces])
-    step = np.diff(nodes)
-    across = np.zeros(len(step))
-    ends = np.cumsum([len(at) for at, _ in pieces])[:-1] - 1
-    step[ends] = 0.0
-    height = np.where(np.isfinite(place[:, 2]), place[:, 2], 0.0)
-    lengths = np.linalg.norm(np.diff(np.column_stack([place[:, :2], height]), axis=0), axis=1)
-    gaps = np.flatnonzero((np.diff(part) != 0) & (np.diff(segment) == 0))
-    for gap in gaps:
-        before = min(max(int(np.searchsorted(nodes, time[gap] + 1e-9)) - 1, 0), len(across) - 1)
-        across[before] += lengths[gap]
-    speed = np.concatenate([samples for _, samples in pieces], axis=1)
-    return PathEstimate(nodes, step, speed, _vertical_speed(time, place[:, 2], part, nodes), across)
 
 
 def _vertical_speed(time: FloatArray, height: FloatArray, part: IntArray, nodes: FloatArray) -> FloatArray | None:

@@ -84,14 +84,8 @@ def earth_centred(latitude_deg: FloatArray, longitude_deg: FloatArray, height: F
     latitude, longitude = np.asarray(latitude_deg) * DEGREE, np.asarray(longitude_deg) * DEGREE
     sine, cosine = np.sin(latitude), np.cos(latitude)
     normal = SEMI_MAJOR_AXIS / np.sqrt(1.0 - _ECCENTRICITY2 * sine**2)
-    return np.stack(
-        [
-            (normal + height) * cosine * np.cos(longitude),
-            (normal + height) * cosine * np.sin(longitude),
-            (normal * (1.0 - _ECCENTRICITY2) + height) * sine,
-        ],
-        axis=-1,
-    )
+    x, y = (normal + height) * cosine * np.cos(longitude), (normal + height) * cosine * np.sin(longitude)
+    return np.stack([x, y, (normal * (1.0 - _ECCENTRICITY2) + height) * sine], axis=-1)
 
 
 def geodetic(place: FloatArray) -> FloatArray:

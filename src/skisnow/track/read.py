@@ -30,6 +30,8 @@ SUFFIXES: Final[dict[str, TrackFormat]] = {
     ".pos": "rtklib",
     ".csv": "csv",
 }
+_BINARY_READERS: Final = {"fit": read_fit, "ubx": read_ubx, "nmea": read_nmea}
+_TEXT_READERS: Final = {"gpx": read_gpx, "tcx": read_gpx, "rtklib": read_rtklib, "csv": read_table}
 _HEAD: Final = 1 << 16
 _PACKED: Final = (b"PK\x03\x04", b"\x1f\x8b")
 _OTHER: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<|\{|A\w{3,}[^,;\t\n]*\r?\nH[FOP])")
@@ -114,17 +116,10 @@ def _read_bytes(path: Path) -> bytes:
 
 def _read_recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
     """Recording from the bytes of a file by the reader of its format; rejects packed and unknown files."""
-    if kind == "fit":
-        return read_fit(data, name)
-    if kind == "ubx":
-        return read_ubx(data, name)
-    if kind == "nmea":
-        return read_nmea(data, name)
+    if kind in _BINARY_READERS:
+        return _BINARY_READERS[kind](data, name)
     if data.startswith(_PACKED) or (kind == "csv" and _OTHER.match(data)):
         allowed = Message("CSV, GPX, TCX, FIT, NMEA, UBX or .pos of RTKLIB")
         action = Message("Export the track as GPX, or unpack it.")
         raise track_error("unreadable_file", name, allowed, action, value=data[:16].decode("latin-1"))
-    text = decode_text(data, name)
-    if kind in ("gpx", "tcx"):
-        return read_gpx(text, name)
-    return read_rtklib(text, name) if kind == "rtklib" else read_table(text, name)
+    return _TEXT_READERS[kind](decode_text(data, name), name)

@@ -170,18 +170,9 @@ def _make_stretch(track: Track, motion: TrackMotion, height: FloatArray | None, 
         distance, *ends = motion.path.length(start, end)
         distance_interval = ends[0], ends[1]
     speed, speed_interval = max_speed(track, motion, inside)
-    return Stretch(
-        first,
-        last,
-        start,
-        end,
-        distance,
-        None if height is None else float(height[first] - height[last]),
-        speed,
-        int(np.count_nonzero(np.diff(motion.smoothed.part[inside]))),
-        distance_interval,
-        speed_interval,
-    )
+    descent = None if height is None else float(height[first] - height[last])
+    gaps = int(np.count_nonzero(np.diff(motion.smoothed.part[inside])))
+    return Stretch(first, last, start, end, distance, descent, speed, gaps, distance_interval, speed_interval)
 
 
 def max_speed(track: Track, motion: TrackMotion, inside: slice) -> tuple[float | None, tuple[float, float] | None]:

@@ -76,10 +76,26 @@ def in_slope_frame(
     ----------
     The page docs/files/track.md.
     """
-    _require_frame_arguments(track, fall_line_azimuth, slope_angle, origin)
+    if track.axes == "slope":
+        raise ParameterError("the track {name} is in a slope's frame already: {frame}").tag(
+            "already_on_slope", name=track.name, frame=track.frame
+        )
+    if not abs(fall_line_azimuth) <= 2.0 * math.pi:
+        raise ParameterError(
+            "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?"
+        ).tag("out_of_range", azimuth=fall_line_azimuth)
+    if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
+        raise ParameterError(
+            "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad"
+        ).tag("out_of_range", slope_angle=slope_angle, steepest=STEEPEST)
+    zero = np.asarray(origin, float)
+    if zero.shape != (3,) or not np.isfinite(zero).all():
+        raise ParameterError("the origin of a slope is {value!r}; it must be three finite numbers in m").tag(
+            "not_a_number", value=origin
+        )
     angle = slope_angle or 0.0
     axes = slope_axes(fall_line_azimuth, angle)
-    place = _rotate(track.place - np.asarray(origin, float), axes, missing_height)
+    place = _rotate(track.place - zero, axes, missing_height)
     velocity = None if track.velocity is None else _rotate(track.velocity, axes, missing_height)
     place_sd = None
     if track.place_sd is not None:
@@ -88,10 +104,9 @@ def in_slope_frame(
     words = "x horizontal distance down the fall line, y to the left, z height"
     if slope_angle is not None:
         words = f"x down the fall line, y to the left, z out of a plane slope of {slope_angle / DEGREE:.6g}°"
-    place_of_origin = ", ".join(f"{float(value):g}" for value in origin)
     frame = (
-        f"{words}, in m; fall line towards {fall_line_azimuth / DEGREE:.6g}° from north; origin at ({place_of_origin}) "
-        f"m of: {track.frame}"
+        f"{words}, in m; fall line towards {fall_line_azimuth / DEGREE:.6g}° from north; origin at "
+        f"({', '.join(f'{value:g}' for value in zero)}) m of: {track.frame}"
     )
     track = replace(track, place=place, velocity=velocity, place_sd=place_sd)
     return replace(track, axes="slope", slope_angle=angle, frame=frame)
@@ -105,29 +120,6 @@ def _rotate(vectors: FloatArray, axes: FloatArray, missing_height: str) -> Float
         vertical = np.where(np.isnan(vertical), -(horizontal @ axes[2, :2]) / axes[2, 2], vertical)
     parts = [np.where(axis[2] == 0.0, 0.0, axis[2] * vertical) for axis in axes]
     return np.asarray(horizontal @ axes[:, :2].T + np.stack(parts, axis=-1))
-
-
-def _require_frame_arguments(
-    track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray
-) -> None:
-    """Reject a track in a slope's frame, and an azimuth, a slope angle (rad) or an origin (m) out of range."""
-    if track.axes == "slope":
-        raise ParameterError("the track {name} is in a slope's frame already: {frame}").tag(
-            "already_on_slope", name=track.name, frame=track.frame
-        )
-    if not abs(azimuth) <= 2.0 * math.pi:
-        raise ParameterError(
-            "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?"
-        ).tag("out_of_range", azimuth=azimuth)
-    if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
-        raise ParameterError(
-            "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad"
-        ).tag("out_of_range", slope_angle=slope_angle, steepest=STEEPEST)
-    place = np.asarray(origin, float)
-    if place.shape != (3,) or not np.isfinite(place).all():
-        raise ParameterError("the origin of a slope is {value!r}; it must be three finite numbers in m").tag(
-            "not_a_number", value=origin
-        )
 
 
 CLEARLY: Final = 3.0

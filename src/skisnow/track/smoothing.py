@@ -88,7 +88,13 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
     length = max(SHORTEST_WINDOW, POINTS_IN_WINDOW * step) if window is None else window
     part = parts(track, usable)
     windows = window_bounds(track.time, part, length)
-    _require_sparse(track, windows, length)
+    count = windows[1] - windows[0]
+    if count.max() > MOST_IN_WINDOW:  # the time of the fits grows with this number
+        at, most = int(np.argmax(count)), MOST_IN_WINDOW
+        raise ParameterError(
+            "{name}: {count} points are within {length:.3g} s of {time:.6g} s. Allowed: at most {most}. Check the "
+            "column of times, or give fewer points"
+        ).tag("too_many_points", name=track.name, count=count[at], length=length, time=track.time[at], most=most)
     place, rate = _places(track, usable), _weighted_velocities(track, usable)
     noises = _noises(track.time, windows, length / 2.0, place, rate)
     noises = (noises[0] if place_noise is None else place_noise, noises[1])
@@ -141,19 +147,6 @@ def window_bounds(time: FloatArray, part: IntArray, length: float) -> tuple[IntA
 def _median_step(time: FloatArray) -> float:
     """Median of the steps between times (s)."""
     return float(np.median(np.diff(time)))
-
-
-def _require_sparse(track: Track, windows: tuple[IntArray, IntArray], length: float) -> None:
-    """Reject a window of very many points: the time of the fits grows with their number."""
-    count = windows[1] - windows[0]
-    if count.max() > MOST_IN_WINDOW:
-        at = int(np.argmax(count))
-        raise ParameterError(
-            "{name}: {count} points are within {length:.3g} s of {time:.6g} s. Allowed: at most {most}. Check the "
-            "column of times, or give fewer points"
-        ).tag(
-            "too_many_points", name=track.name, count=count[at], length=length, time=track.time[at], most=MOST_IN_WINDOW
-        )
 
 
 def _require_positive(name: str, unit: str, value: float | None) -> None:

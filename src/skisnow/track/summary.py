@@ -122,7 +122,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     length = None if motion.path is None else motion.path.length()
     return TrackSummary(
         track, motion, day, turns, distances, *max_speed(track, motion, slice(None)),
-        None if length is None else (length.low, length.high),
+        length and length[1:],
         None if motion.path is None else motion.path.length(with_heights=False),
         (*track.notes, *_remarks(track, motion, distances), *day.remarks),
     )  # fmt: skip
@@ -184,9 +184,7 @@ def summary_dict(summary: TrackSummary) -> Json:
         "distances_m": {name.replace(" ", "_"): json_number(value) for name, value in summary.distances.items()},
         "distance_interval_m": _interval_list(summary.distance_interval if from_places else None),
         "horizontal_distance_m": json_number(None if horizontal is None else horizontal.value),
-        "horizontal_distance_interval_m": _interval_list(
-            None if horizontal is None else (horizontal.low, horizontal.high)
-        ),
+        "horizontal_distance_interval_m": _interval_list(horizontal and horizontal[1:]),
         "max_speed_m_per_s": json_number(summary.max_speed),
         "max_speed_interval_m_per_s": _interval_list(summary.max_speed_interval),
         "speed_source": summary.motion.speed_source,

@@ -85,26 +85,16 @@ def _gate_of_row(row: CsvRow) -> Gate:
     """Gate of a table's row; rejects an unknown side, a missing name, and half an outer pole."""
     side = row.cells["side"].lower()
     if side not in ("left", "right"):
-        raise row.refused(
-            "side",
-            Message("Must be left or right, the side on which the turning pole is passed."),
-            code="unknown_choice",
-        )
+        problem = Message("Must be left or right, the side on which the turning pole is passed.")
+        raise row.refused("side", problem, code="unknown_choice")
     if not row.cells["gate"]:
-        raise row.refused(
-            "gate",
-            Message("This is not a name."),
-            code="missing_name",
-            action=Message("Give each gate a number or a name."),
-        )
+        problem, action = Message("This is not a name."), Message("Give each gate a number or a name.")
+        raise row.refused("gate", problem, code="missing_name", action=action)
     outer_cells = [name for name in _OUTER if row.cells.get(name)]
     if len(outer_cells) == 1:
-        raise row.refused(
-            outer_cells[0],
-            Message("The other coordinate of the outer pole is missing."),
-            code="missing_column",
-            action=Message("Give both columns ({columns}), or neither.", columns=_OUTER),
-        )
+        problem = Message("The other coordinate of the outer pole is missing.")
+        action = Message("Give both columns ({columns}), or neither.", columns=_OUTER)
+        raise row.refused(outer_cells[0], problem, code="missing_column", action=action)
     outer = (row.number("outer_x_m"), row.number("outer_y_m")) if outer_cells else None
     place = (row.number("x_m"), row.number("y_m"))
     return Gate(name=row.cells["gate"], turning=place, side=cast("Side", side), outer=outer)

@@ -21,17 +21,10 @@ def gate_rows(result: CourseResult) -> list[dict[str, Any]]:
     """Rows of gates.csv by `COLUMNS`; times count from the track's first point; None for missing values."""
     rows, before = [], result.start_time
     for passage in result.passages:
-        time, gate = passage.time, passage.gate
-        values = (
-            gate.name,
-            gate.side,
-            passage.outcome,
-            None if time is None else time - result.start_time,
-            None if time is None else time - before,
-            passage.speed,
-            passage.clearance,
-            *gate.turning,
-        )
+        gate = passage.gate
+        time = None if passage.time is None else passage.time - result.start_time
+        split = None if passage.time is None else passage.time - before
+        values = (gate.name, gate.side, passage.outcome, time, split, passage.speed, passage.clearance, *gate.turning)
         cells = [json_number(value) if isinstance(value, float) else value for value in values]
         rows.append(dict(zip(COLUMNS, cells, strict=True)))
         before = before if passage.time is None else passage.time
@@ -56,10 +49,8 @@ def gates_dict(result: CourseResult) -> dict[str, Any]:
 
 def time_warnings(result: CourseResult) -> tuple[str, ...]:
     """Warning if points are too far apart for times accurate to a hundredth of a second."""
-    doubts = [
-        passage.doubt for passage in result.passages if passage.doubt is not None and math.isfinite(passage.doubt)
-    ]
-    worst = max(doubts, default=0.0)
+    doubts = (passage.doubt for passage in result.passages if passage.doubt is not None)
+    worst = max(filter(math.isfinite, doubts), default=0.0)
     if worst <= DOUBTFUL:
         return ()
     return (

@@ -148,16 +148,8 @@ def _epoch_row(epoch: _Epoch) -> tuple[float, ...]:
     message, place = epoch.message, epoch.precise or epoch.message
     velocity = (message.velE * MM, message.velN * MM, -message.velD * MM)
     has_fix = bool(message.gnssFixOk) and message.fixType not in _NO_FIX and not getattr(message, "invalidLlh", 0)
-    return (
-        place.lat,
-        place.lon,
-        place.height * MM,
-        message.gSpeed * MM,
-        *velocity,
-        *_place_sd(place, epoch.covariance),
-        _speed_sd(message, epoch.covariance, velocity),
-        float(has_fix),
-    )
+    deviations = (*_place_sd(place, epoch.covariance), _speed_sd(message, epoch.covariance, velocity))
+    return (place.lat, place.lon, place.height * MM, message.gSpeed * MM, *velocity, *deviations, float(has_fix))
 
 
 def _place_sd(place: Any, covariance: Any) -> tuple[float, float, float]:

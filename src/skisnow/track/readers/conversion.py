@@ -228,10 +228,7 @@ def _between_neighbours(time: FloatArray, fix: BoolArray) -> BoolArray:
     numbers = np.arange(len(time))
     before = np.maximum.accumulate(np.where(fix, numbers, -1))
     after = np.minimum.accumulate(np.where(fix, numbers, len(time))[::-1])[::-1]
+    earliest, latest = fixed_time[np.maximum(before, 0)], fixed_time[np.minimum(after, len(time) - 1)]
     with np.errstate(invalid="ignore"):
-        return np.asarray(
-            (before >= 0)
-            & (after < len(time))
-            & (time >= fixed_time[np.maximum(before, 0)])
-            & (time <= fixed_time[np.minimum(after, len(time) - 1)])
-        )
+        is_between = (time >= earliest) & (time <= latest)
+    return np.asarray(is_between & (before >= 0) & (after < len(time)))

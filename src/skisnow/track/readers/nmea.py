@@ -88,9 +88,8 @@ class _Epoch:
             self.day = day if isinstance(day, date) else self.day
         elif kind == "VTG":
             speed = _number(message, "sogk") * KM_PER_H
-            self._take_speed(
-                speed if math.isfinite(speed) else _number(message, "sogn") * KNOT, _number(message, "cogt")
-            )
+            speed = speed if math.isfinite(speed) else _number(message, "sogn") * KNOT
+            self._take_speed(speed, _number(message, "cogt"))
         elif kind == "GST":
             self.sd = (_number(message, "stdLong"), _number(message, "stdLat"), _number(message, "stdAlt"))
         elif kind == "ZDA":
@@ -141,8 +140,8 @@ def read_nmea(data: bytes, name: str) -> Recording:
     counts[NO_PLACE] = sum(not _has_place(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)
     placed = [number for number, epoch in enumerate(epochs) if _has_place(epoch)]
     epochs, times = [epochs[number] for number in placed], times[placed]
-    columns = ("speed", "course", "height", "separation", "sd")
-    speed, course, height, separation, sd = (np.array([getattr(e, column) for e in epochs]) for column in columns)
+    keys = ("speed", "course", "height", "separation", "sd")
+    speed, course, height, separation, sd = (np.array([getattr(epoch, key) for epoch in epochs]) for key in keys)
     direction = course * DEGREE
     velocity = np.column_stack([speed * np.sin(direction), speed * np.cos(direction), np.full(len(epochs), np.nan)])
     heights = "above mean sea level, as recorded"

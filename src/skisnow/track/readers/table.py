@@ -104,15 +104,12 @@ class _Table:
         columns = _columns(cells.header, is_geodetic, name, place)
         width = len(cells.header)
         for line, row in zip(cells.lines, cells.rows, strict=True):
-            if any(row[width:]):
-                allowed = count_message(
-                    "{count} cell, as in the header", "{count} cells, as in the header", count=width
-                )
-                action = Message(
-                    "A decimal comma in a file separated by commas looks like this; separate by semicolons."
-                )
-                beyond = next(filter(None, row[width:]))
-                raise track_error("too_many_cells", name, allowed, action, place=f"row {line}", value=beyond)
+            beyond = next(filter(None, row[width:]), None)
+            if beyond is None:
+                continue
+            allowed = count_message("{count} cell, as in the header", "{count} cells, as in the header", count=width)
+            action = Message("A decimal comma in a file separated by commas looks like this; separate by semicolons.")
+            raise track_error("too_many_cells", name, allowed, action, place=f"row {line}", value=beyond)
         blanks = [("",) * missing for missing in range(width, 0, -1)]
         rows = tuple(row + blanks[len(row)] if len(row) < width else row[:width] for row in cells.rows)
         places = [column.place for column in columns.values()]
@@ -133,17 +130,14 @@ class _Table:
 
     def require_columns(self) -> None:
         """Reject a table without two coordinates and a time."""
-        for column in GEODETIC[:2] if self.is_geodetic else LOCAL[:2]:
-            if column not in self.columns:
-                raise self._missing_error(column)
+        coordinates = GEODETIC[:2] if self.is_geodetic else LOCAL[:2]
+        absent = [column for column in coordinates if column not in self.columns]
         if not any(column in self.columns for column in TIMES):
-            raise self._missing_error("time" if self.is_geodetic else "time_s")
-
-    def _missing_error(self, column: str) -> Exception:
-        """Error for a missing column, with the header and the accepted forms of tables."""
-        place, value = f"row {self.cells.header_line}", ", ".join(self.cells.header)
-        allowed, action = Message("the columns {forms}", forms=_FORMS), Message("Name the column in the header.")
-        return track_error("missing_column", self.name, allowed, action, place=place, column=column, value=value)
+            absent.append("time" if self.is_geodetic else "time_s")
+        if absent:
+            place, value = f"row {self.cells.header_line}", ", ".join(self.cells.header)
+            allowed, action = Message("the columns {forms}", forms=_FORMS), Message("Name the column in the header.")
+            raise track_error("missing_column", self.name, allowed, action, place=place, column=absent[0], value=value)
 
     def column(self, name: str) -> list[str]:
         """Cells of a column that the file has, which then counts as used."""
