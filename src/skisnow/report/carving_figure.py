@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Final, TypeAlias
+from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,9 +14,7 @@ from .._support.messages import Message, outcome_words
 from .._support.units import MM
 from .figures.style import BLACK, DOUBLE_MM, GREY, PALE, legend_below, line_style, new_figure
 from .formatting import figure_text, significant
-from .summaries import answers_of, ski_titles
-
-Json: TypeAlias = Mapping[str, Any]
+from .summaries import Json, answers_of, ski_titles
 
 _PANELS: Final = (
     ("edge_depth_mm", Message("edge depth $e$ (mm)")),
@@ -83,12 +80,9 @@ def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> No
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylabel(label)
     axes.set_xlabel(Message("position along the ski (m), boot = 0"))
-    if key == "edge_depth_mm":
-        _draw_surface(axes, answers)
-
-
-def _draw_surface(axes: Axes, answers: list[Json]) -> None:
-    """Draw depth downwards, and limit the height above the snow so that the groove stays visible."""
+    if key != "edge_depth_mm":
+        return
+    # depth downwards, and a limited height above the snow, so that the groove stays visible
     depths = [depth for answer in answers for depth in answer["edge_depth_mm"] or () if depth is not None]
     deepest = max(depths, default=1.0)
     axes.set_ylim(1.15 * deepest, -min(0.6 * deepest, max(0.0, -min(depths, default=0.0)) + 0.08 * deepest))

@@ -121,25 +121,16 @@ def _drawings(result: Identification) -> Iterator[Drawing]:
     """All figures in order; each is drawn when it is requested, so that it gets the style in force."""
     tracks = [fit for fit in result.fits if fit.kind == "track"]
     if tracks:
-        yield Drawing(
-            "tracks",
-            prose("Tracks from above: points measured, lines with the identified parameters."),
-            Message("Measured points and identified tracks from above."),
-            draw_tracks(tracks),
-            wide=True,
-        )
+        words = prose("Tracks from above: points measured, lines with the identified parameters.")
+        alt = Message("Measured points and identified tracks from above.")
+        yield Drawing("tracks", words, alt, draw_tracks(tracks), wide=True)
     for kind, (caption, alt) in _RESIDUALS.items():
         fits = [fit for fit in result.fits if fit.kind == kind]
         if fits:
             yield Drawing(f"residuals_{kind}", prose(caption), alt, draw_residuals(fits), wide=True)
     if result.profiles:
-        yield Drawing(
-            "profiles",
-            prose("Rise of the sum of squares, in squared standard deviations, along each parameter."),
-            Message("Profiles of the sum of squares."),
-            draw_profiles(result),
-            wide=True,
-        )
+        words = prose("Rise of the sum of squares, in squared standard deviations, along each parameter.")
+        yield Drawing("profiles", words, Message("Profiles of the sum of squares."), draw_profiles(result), wide=True)
 
 
 _RESIDUALS: Final = {

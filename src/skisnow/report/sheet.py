@@ -60,7 +60,6 @@ def sheet(header: Header, sections: Sequence[Section]) -> str:
         header=header,
         sections=sections,
         version=version("skisnow"),
-        cited=cited_text(),
         bibtex=bibtex(),
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
@@ -68,13 +67,14 @@ def sheet(header: Header, sections: Sequence[Section]) -> str:
 
 
 def render_template(name: str, /, **values: Any) -> str:
-    """HTML of a template of this package in the current language, with the style sheet ``css``.
+    """HTML of a template of this package in the current language, with the values ``css``, ``language`` and ``cited``.
 
     A missing value is an error.
     """
     language = current_language()
     css = files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")
-    return _page_environment(language).get_template(name).render(css=Markup(css), language=language, **values)
+    values |= {"css": Markup(css), "language": language, "cited": CITED.format(version=version("skisnow"))}
+    return _page_environment(language).get_template(name).render(**values)
 
 
 def _page_environment(language: str) -> Environment:
@@ -135,11 +135,6 @@ _CAMPAIGN: Final = """\
   howpublished = {{Field campaign{place}}}{files}
 }}
 """
-
-
-def cited_text() -> str:
-    """Sentence in HTML that cites the program and its papers."""
-    return CITED.format(version=version("skisnow"))
 
 
 def bibtex(campaign: Mapping[str, Any] | None = None) -> str:

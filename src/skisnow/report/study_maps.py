@@ -16,9 +16,7 @@ from .._support.messages import Message
 from .._support.units import DEGREE
 from ..studies import StudyTable
 from .figures.style import BLACK, BLUE, COLOURS, GREY, MARKERS, VERMILLION, legend_below, logarithmic, plain_number
-from .study_layout import MOST_LINES, MapLayout, drawn_table, empty_map, label, lines_of, map_layout, short
-
-Json = dict[str, Any]
+from .study_layout import MOST_LINES, Json, MapLayout, drawn_table, empty_map, label, lines_of, map_layout, short
 
 LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Grip utilisations at which the colour changes; at 1 the edge loses grip."""
@@ -53,7 +51,12 @@ def grip_map(table: StudyTable) -> Figure:
             axes.use_sticky_edges = False
             axes.margins(0.03)
     if layout.second is not None and not layout.sampled:
-        _draw_colour_bar(figure, every)
+        bounds = [LEVELS[0] / 2.0, *LEVELS, LEVELS[-1] * 2.0]
+        scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
+        bar = figure.colorbar(scale, ax=every, pad=0.01, aspect=35, spacing="uniform")
+        bar.set_ticks(list(LEVELS), labels=[plain_number(level) for level in LEVELS])
+        bar.set_label(Message("side force / shear capacity"))
+        bar.ax.axhline(1.0, color=BLACK, linewidth=1.8)
     for axes, rows in panels:
         axes.legend(handles=_grip_handles(layout, rows), loc="best", fontsize=5.5, frameon=True, framealpha=0.9)
     return figure
@@ -118,16 +121,6 @@ def _set_scales(axes: Axes, rows: Sequence[Json], x: str, y: str | None) -> None
             values = _numbers(rows, str(name))
             if values.min() > 0 and values.max() > _LOG_FROM * values.min():
                 logarithmic(axes, which, values)
-
-
-def _draw_colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
-    """Draw the colour bar of the share of the limit, with a line at 1."""
-    bounds = [LEVELS[0] / 2.0, *LEVELS, LEVELS[-1] * 2.0]
-    scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
-    bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
-    bar.set_ticks(list(LEVELS), labels=[plain_number(level) for level in LEVELS])
-    bar.set_label(Message("side force / shear capacity"))
-    bar.ax.axhline(1.0, color=BLACK, linewidth=1.8)
 
 
 def _grip_handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:

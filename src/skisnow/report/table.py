@@ -188,10 +188,10 @@ def _cell_html(column: Column, value: Any, index: int) -> Markup:
 def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:
     """HTML of a number and, unless it is None, its interval."""
     number, pair = value
-    ends = (
-        Markup("") if pair is None else Markup(' <span class="i">{}</span>').format(formatting.interval(pair, digits))
-    )
-    return Markup(formatting.significant(number, digits)) + ends
+    text = Markup(formatting.significant(number, digits))
+    if pair is None:
+        return text
+    return Markup('{} <span class="i">{}</span>').format(text, formatting.interval(pair, digits))
 
 
 def _names_text(names: list[str]) -> Markup:

@@ -21,7 +21,7 @@ from ...estimation.results import results_pieces
 from ..figures.drawing import Drawing, LeftOut, Picture, Progress, picture_files, silent, write_pictures
 from ..figures.style import SiteStyle, site_styles
 from ..formatting import significant
-from ..sheet import bibtex, cited_text, render_template
+from ..sheet import bibtex, render_template
 from ..table import Table, table_csv, table_html
 from .data import ReportData
 from .key_results import headline, key_results
@@ -142,7 +142,6 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
         missing=missing,
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         matplotlib_version=version("matplotlib"),
-        cited=cited_text(),
         bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
     )
 

@@ -41,9 +41,8 @@ def force_depth(data: ReportData, styles: Sequence[style.SiteStyle]) -> Drawing 
     series = [[i for i, row in rows if row["used"] and row["edge_angle_deg"] == angle] for angle in angles]
     drawn = [_evenly_spaced(indices, data) for indices in series]
     counts = list(zip(angles, map(len, drawn), map(len, series), strict=True))
-    wide_range = any(
-        style.spans_a_decade(np.array([tests.series(i).penetration_depth.max() for i in some])) for some in drawn
-    )
+    deepest = ([tests.series(index).penetration_depth.max() for index in indices] for indices in drawn)
+    wide_range = any(style.spans_a_decade(np.array(depths)) for depths in deepest)
     for panel, angle, indices in zip(panels, angles, drawn, strict=True):
         drawn_sites = _draw_panel(panel, data, indices, styles, wide_range=wide_range)
         handles |= {str(handle.get_label()): handle for handle in drawn_sites}
@@ -143,11 +142,8 @@ def seating_offsets(data: ReportData, styles: Sequence[style.SiteStyle]) -> Draw
     """Offset of the depth zero of each series with its interval, against hardness."""
     name, rows = "seating", data.seating
     if not rows:
-        return LeftOut(
-            name,
-            Message("Offsets of the depth zero"),
-            Message("no used series has the three readings that an offset needs"),
-        )
+        reason = Message("no used series has the three readings that an offset needs")
+        return LeftOut(name, Message("Offsets of the depth zero"), reason)
     offset, intervals = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
     label = Message("depth offset $\\delta$ (mm)")
     plot = _plot_against_hardness(data, styles, rows, offset, intervals, label)
@@ -171,9 +167,8 @@ def unloading_ratios(data: ReportData, styles: Sequence[style.SiteStyle]) -> Dra
     name = "unloading"
     rows = [row for row in data.unloaded if row["used"] and row["unloading_ratio_interval"] is not None]
     if not rows:
-        return LeftOut(
-            name, Message("Unloading"), Message("no used series was read while its discs were taken off one by one")
-        )
+        reason = Message("no used series was read while its discs were taken off one by one")
+        return LeftOut(name, Message("Unloading"), reason)
     ratio, intervals = numbers(rows, "unloading_ratio"), pairs(rows, "unloading_ratio_interval")
     label = Message("unloading ratio $k_\\mathrm{{u}}/H_\\mathrm{{V}}$")
     plot = _plot_against_hardness(data, styles, rows, ratio, intervals, label)

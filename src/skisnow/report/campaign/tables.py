@@ -174,19 +174,13 @@ def regressions_table(data: ReportData) -> Table:
 def _regression_row(row: Json) -> tuple[Any, ...]:
     """Cells of a regression: names, group, count, estimates with intervals, interval by site, fit."""
     coefficients, intervals = row["b"] or (None, None), row["interval"] or (None, None)
-    by_site = row["interval_by_site"]
+    by_site = row["interval_by_site"][1] if row["interval_by_site"] else None
+    group = Message("all") if row["group"] == "all" else row["group"]
     quantities = (QUANTITY[key] for key in (row["response"], row["terms"][1]))
     names = (Message("{name} ({unit})", name=name, unit=unit) for name, unit in quantities)
     estimates = zip(coefficients, intervals, strict=True)
     fit = (row[key] for key in ("rmse", "rmse_dof", "r2", "F", "p"))
-    return (
-        *names,
-        Message("all") if row["group"] == "all" else row["group"],
-        row["n"],
-        *estimates,
-        by_site[1] if by_site else None,
-        *fit,
-    )
+    return (*names, group, row["n"], *estimates, by_site, *fit)
 
 
 def weather_table(data: ReportData) -> Table:

@@ -111,8 +111,10 @@ def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Dr
 
 
 def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> Message:
-    """Sentence that says which run is ahead at the last gate that both crossed, and by how much."""
-    last = [gap for gap in gaps if gap.gap_s is not None][-1]
+    """Sentence on the last gate that both crossed: which run is ahead there and by how much; or that there is none."""
+    last = next((gap for gap in reversed(gaps) if gap.gap_s is not None), None)
+    if last is None:
+        return Message("No gate was crossed by both.")
     gap = last.gap_s or 0.0
     fields = {"own": names[0], "other": names[1], "gate": last.gate, "gap": abs(gap)}
     if abs(gap) < 0.005:

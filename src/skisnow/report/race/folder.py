@@ -19,7 +19,7 @@ from ..figures.course import run_course
 from ..figures.drawing import FORMS, Picture, write_figure, write_pictures
 from ..formatting import aligned_rows, html, json_text, prose
 from ..sheet import Section
-from ..table import Column, Table, record_table
+from ..table import Column, record_table
 from .figures import gap_drawings, gate_gaps_figure, last_words, race_lines, race_worth
 
 SUMMARY = "race.json"
@@ -76,7 +76,7 @@ def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     rows: list[tuple[str, ...]] = [("gate", Message("time (s)"), "other (s)", "gap (s)", "lost (s)")]
     rows += [(gap.gate, *(text or "-" for text in _time_texts(gap).values())) for gap in gaps]
     heading = Message("Gates of {name} against {name_2}, behind +", name=names[0], name_2=names[1])
-    return "\n".join([heading, *aligned_rows(rows), _result_sentence(gaps, names)])
+    return "\n".join([heading, *aligned_rows(rows), last_words(gaps, names)])
 
 
 def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) -> list[Picture]:
@@ -90,13 +90,7 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) 
 
 
 def gaps_section(gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture]) -> Section:
-    """Section of a page with the time lost from gate to gate, in the current language."""
-    key = [html(_result_sentence(gaps, names))]
-    return Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[gaps_table(gaps, names)])
-
-
-def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
-    """Table with a row for each gate, times to a hundredth of a second."""
+    """Section of a page with the time lost from gate to gate, to a hundredth of a second, in the current language."""
     headings = (Message("Gate"), Message("Outcome"), Message("Time"), Message("Outcome of the other"),
                 Message("Its time"), Message("Gap"), Message("Lost"))  # fmt: skip
     columns = [
@@ -110,7 +104,9 @@ def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
     ]
     note = Message("Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses.")
     caption = Message("Gates of {run} against {other}.", run=names[0], other=names[1])
-    return record_table("gate_gaps", caption, tuple(columns), records, note=note)
+    table = record_table("gate_gaps", caption, tuple(columns), records, note=note)
+    key = [html(last_words(gaps, names))]
+    return Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[table])
 
 
 def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
@@ -124,11 +120,6 @@ def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
     if gap > 0.0:
         sentence = template("{value} behind at gate {gate}; {number} of {all} gates were crossed by both.")
     return prose(sentence, value=value, gate=crossed[-1].gate, number=len(crossed), all=len(gaps))
-
-
-def _result_sentence(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Message:
-    """Message about the last gate that both crossed, or that there is none."""
-    return last_words(gaps, names) if _crossed_by_both(gaps) else Message("No gate was crossed by both.")
 
 
 def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:

@@ -18,15 +18,7 @@ from ..figures.course import run_course
 from ..figures.drawing import Drawing
 from ..figures.style import journal_style
 from ..formatting import prose, significant
-from .time_figures import (
-    run_along_ski,
-    run_balance,
-    run_boots,
-    run_energies,
-    run_grip,
-    run_motion,
-    slip_of_a_place,
-)
+from . import time_figures
 from .track_figure import CUTOUT, STEADY, run_track
 
 
@@ -102,7 +94,7 @@ _FIGURES: Final = {
         template("Line over the gates of the course, coloured by edge angle."),
     ),
     "motion": RunFigure(
-        run_motion,
+        time_figures.run_motion,
         template(
             "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The "
             "radius is not drawn where it is more than three times its median."
@@ -111,7 +103,7 @@ _FIGURES: Final = {
         further=_carved_radius,
     ),
     "boots": RunFigure(
-        run_boots,
+        time_figures.run_boots,
         template(
             "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: (b) "
             "off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, positive where "
@@ -120,7 +112,7 @@ _FIGURES: Final = {
         template("Edge angles of both boots, and forces and edging moment of the skis on them, over time."),
     ),
     "balance": RunFigure(
-        run_balance,
+        time_figures.run_balance,
         template(
             "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean that "
             "would be in balance with speed and path radius of the centre of mass. Force of the snow on each ski: (b) "
@@ -129,7 +121,7 @@ _FIGURES: Final = {
         template("Lean, edge angle and forces of a skier over time."),
     ),
     "along_ski": RunFigure(
-        run_along_ski,
+        time_figures.run_along_ski,
         template(
             "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
             "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
@@ -139,7 +131,7 @@ _FIGURES: Final = {
         template("Maps of edge depth and normal force per length over position along the ski and time, for both skis."),
     ),
     "grip": RunFigure(
-        run_grip,
+        time_figures.run_grip,
         template(
             "Grip utilisation of each ski. Net: the sum of its side force over the capacity, the sum of S_f e; at 1 "
             "the ski side-slips. Gross: the sum of the sizes of the shear instead, which is more where parts of the "
@@ -147,11 +139,11 @@ _FIGURES: Final = {
             "turn such pulls end with a shear displacement u_y of 0.5 to 1 mm."
         ),
         template("Grip utilisation of each ski over time."),
-        lambda run: {"slip": significant(json_number(slip_of_a_place(run) / MM), 2)},
+        lambda run: {"slip": significant(json_number(time_figures.slip_of_a_place(run) / MM), 2)},
         _other_strength,
     ),
     "energies": RunFigure(
-        run_energies,
+        time_figures.run_energies,
         template(
             "(a) Where the energy is and went; the potential energy is above its minimum. Everything on top of each "
             "other must stay at the dashed line. (b) Only the losses."

@@ -29,7 +29,6 @@ from .drawings import run_drawings
 from .file import write_run_file
 from .tables import energies_table, gates_table, scenario_table, skis_table, verification_table
 
-Json = dict[str, Any]
 FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 FURTHER: Final = ("course", "balance", "boots")
@@ -135,10 +134,8 @@ def _value(value: float | None, over_place: Grid | None, size: float, unit: str)
     """Text of a number in a unit of this size, or of its range if it varies over the place, with the unit."""
     if over_place is None:
         return f"{_number(None if value is None else value / size)} {unit}"
-    low, high = float(over_place.values.min()), float(over_place.values.max())
-    return Message(
-        "{low} to {high} {unit} over the place", low=_number(low / size), high=_number(high / size), unit=unit
-    )
+    low, high = (_number(float(end) / size) for end in (over_place.values.min(), over_place.values.max()))
+    return Message("{low} to {high} {unit} over the place", low=low, high=high, unit=unit)
 
 
 def outcome_sentences(run: Run) -> list[Markup]:
@@ -163,9 +160,8 @@ def outcome_sentences(run: Run) -> list[Markup]:
         *(prose("Warning: {text}.", text=text) for text in limits),
     ]  # fmt: skip
     if error is not None and not run_warnings(run):
-        sentences.append(
-            prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))
-        )
+        percent = _number(100.0 * error, 2)
+        sentences.append(prose("The energy residual is {error} % of the energy exchanged.", error=percent))
     return sentences
 
 

@@ -53,11 +53,8 @@ def run_track(run: Run) -> Figure:
     draw_plan(figure.add_subplot(grid[0, :]), run, limits)
     _draw_groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
     handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
-    handles.append(
-        Line2D(
-            [], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label=Message("each second; square: end")
-        )
-    )
+    mark = Message("each second; square: end")
+    handles.append(Line2D([], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label=mark))
     legend_below(figure, handles)
     return figure
 
@@ -119,12 +116,10 @@ def _draw_time_marks(axes: Axes, run: Run, mm_per_metre: float) -> None:
         labelled = float(at_x), float(at_y)
         aside_points, above_points = -_LABEL_POINTS * math.sin(angle), _LABEL_POINTS * math.cos(angle)
         words, is_first = (Message("start"), True) if mark == 0.0 else (Message("{time:g} s", time=mark), False)
-        offset = (
-            max(aside_points, 0.0) if is_first else aside_points,
-            above_points,
-        )  # clear of the numbers at the axis
+        if is_first:  # clear of the numbers at the axis
+            aside_points = max(aside_points, 0.0)
         axes.annotate(
-            words, labelled, offset, textcoords="offset points",
+            words, labelled, (aside_points, above_points), textcoords="offset points",
             ha="left" if is_first else "center", va="center", fontsize=6.5, path_effects=_HALO,
         )  # fmt: skip
     axes.plot(*run.place[-1, :2], linestyle="none", marker="s", markersize=3.4, color=BLACK, zorder=4)

@@ -17,7 +17,6 @@ from ..._support.spreadsheet_text import csv_text, protect_from_formulas
 from ..._support.units import DEGREE
 from ...track.projection import earth_centred, east_north_up_axes, geodetic
 from ...track.summary import TrackSummary
-from ...track.turns import Turn
 from ..formatting import aligned_rows, named_rows, plain
 
 Json = dict[str, Any]
@@ -228,11 +227,9 @@ def _distance_lines(title: str, distances: Mapping[str, Any], length: float, exa
         yield f"  none: {distances['reason']}"
         return
     for key, word in _WORDS.items():
-        share = (
-            f"{rounded(100.0 * distances[f'{key}_share'], 100.0 * exact / length, 2)} % of the measured track's length"
-        )
+        share = rounded(100.0 * distances[f"{key}_share"], 100.0 * exact / length, 2)
         where = f", {metres(distances['max_at_m'], exact)} along it" if key == "max" else ""
-        yield f"  {word:8}{metres(distances[f'{key}_m'], exact)}, {share}{where}"
+        yield f"  {word:8}{metres(distances[f'{key}_m'], exact)}, {share} % of the measured track's length{where}"
     share = plain(100.0 * distances["compared_share"], 4)
     yield f"  over    {metres(distances['compared_m'], exact, 4)}, {share} % of the measured track"
 
@@ -275,27 +272,24 @@ def turn_rows(summary: TrackSummary) -> list[dict[str, Any]]:
     Lean is the angle of balance atan(v²/(g r)) at the minimum radius r, with its interval from that of r. The best turn
     of a side is the one with the largest ratio of the speeds out and in.
     """
-    rows = [_turn_row(summary, number, turn) for number, turn in enumerate(summary.turns, start=1)]
+    rows = []
+    has_speed = np.isfinite(summary.motion.speed)
+    for number, turn in enumerate(summary.turns, start=1):
+        moments = [turn.start, turn.end, turn.least_radius_time]
+        speeds = np.interp(moments, summary.motion.time[has_speed], summary.motion.speed[has_speed])
+        low, high = turn.least_radius_interval
+        lean, most, least = np.arctan(speeds[2] ** 2 / (GRAVITY * np.array([turn.least_radius, low, high]))) / DEGREE
+        values = (
+            number, turn.direction, turn.start, turn.end - turn.start, turn.length, turn.least_radius, low, high,
+            speeds[0], speeds[1], speeds[1] / speeds[0] if speeds[0] > 0 else np.nan, lean, least, most, "",
+        )  # fmt: skip
+        rows.append(dict(zip(TURN_COLUMNS, values, strict=True)))
     for side in ("left", "right"):
         ratios = [row["speed_ratio"] for row in rows if row["side"] == side and np.isfinite(row["speed_ratio"])]
         for row in rows:
             if row["side"] == side and len(ratios) > 1 and row["speed_ratio"] == max(ratios):
                 row["best"] = "best"
     return rows
-
-
-def _turn_row(summary: TrackSummary, number: int, turn: Turn) -> dict[str, Any]:
-    """Row of a turn by column: times, length, least radius, speeds, and lean angles (°) by v²/(g R)."""
-    has_speed = np.isfinite(summary.motion.speed)
-    moments = [turn.start, turn.end, turn.least_radius_time]
-    speeds = np.interp(moments, summary.motion.time[has_speed], summary.motion.speed[has_speed])
-    low, high = turn.least_radius_interval
-    lean, most, least = np.arctan(speeds[2] ** 2 / (GRAVITY * np.array([turn.least_radius, low, high]))) / DEGREE
-    values = (
-        number, turn.direction, turn.start, turn.end - turn.start, turn.length, turn.least_radius, low, high,
-        speeds[0], speeds[1], speeds[1] / speeds[0] if speeds[0] > 0 else np.nan, lean, least, most, "",
-    )  # fmt: skip
-    return dict(zip(TURN_COLUMNS, values, strict=True))
 
 
 def turns_csv(summary: TrackSummary) -> str:

@@ -171,11 +171,10 @@ def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> Non
     """Draw the depth along the ski that is more heavily loaded in the first run, for all runs at one time."""
     reference = named[0][1]
     ski = int(loaded_skis(reference)[_nearest_time_index(reference, moment)])
+    depths = [run.skis.edge_depth[_nearest_time_index(run, moment), ski] / MM for _, run in named]
     for place, (_, run) in enumerate(named):
-        axes.plot(
-            run.skis.station, run.skis.edge_depth[_nearest_time_index(run, moment), ski] / MM, **style.line_style(place)
-        )
-    deepest = max(float(np.nanmax(run.skis.edge_depth[_nearest_time_index(run, moment), ski])) for _, run in named) / MM
+        axes.plot(run.skis.station, depths[place], **style.line_style(place))
+    deepest = max(float(np.nanmax(depth)) for depth in depths)
     axes.axhline(0.0, color=style.GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=style.PALE, linewidth=0.5, zorder=0)
     axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))

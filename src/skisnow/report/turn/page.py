@@ -24,17 +24,8 @@ from ..run.tables import scenario_table
 from ..run.time_figures import run_along_ski, run_grip
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table
-from .chain import (
-    BandShares,
-    TurnChain,
-    afterbody_depth_ratio,
-    band_inputs,
-    band_shares,
-    median_radius,
-    middle_track,
-    turn_dict,
-    used_grip,
-)
+from . import chain as results
+from .chain import BandShares, TurnChain
 from .figures import FEWEST, draw_runs, track_band
 from .sentences import best_measurement, ensemble_accuracy, ensemble_sentence, headline, key_sentences
 
@@ -54,16 +45,11 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     folder = Path(folder)
     prepare_folder(folder)
     with staged(folder, last="report.html") as stage:
-        write_file(stage.path / "turn.json", f"{json_text(turn_dict(chain))}\n")
+        write_file(stage.path / "turn.json", f"{json_text(results.turn_dict(chain))}\n")
         with in_language(language):
             pictures = write_pictures(_make_drawings(chain), stage.path / "figures")
             write_file(stage.path / "report.html", turn_page(chain, pictures))
     return folder / "report.html"
-
-
-def turn_page(chain: TurnChain, pictures: Sequence[Picture]) -> str:
-    """HTML of the report of a chain from campaign to turn in the current language."""
-    return sheet(_make_header(chain), _make_sections(chain, pictures))
 
 
 _DRAWINGS: Final[dict[str, tuple[Callable[[TurnChain], Figure], str, Message]]] = {
@@ -86,7 +72,7 @@ _DRAWINGS: Final[dict[str, tuple[Callable[[TurnChain], Figure], str, Message]]] 
         Message("Grip utilisation of each ski over time."),
     ),
     "band": (
-        lambda chain: track_band(middle_track(chain.nominal), [run.track for run in chain.ensemble]),
+        lambda chain: track_band(results.middle_track(chain.nominal), [run.track for run in chain.ensemble]),
         template(
             "The turn ({name}) with the unknown inputs of snow, friction and ski varied: tracks from above, and "
             "below the distance of each run beside and ahead of the nominal one at the same time."
@@ -117,17 +103,12 @@ def _make_header(chain: TurnChain) -> Header:
         "This snow was not measured: the campaign, and with it every parameter, turn and band below, comes from a "
         "random number generator."
     )
-    return Header(
-        Message("From a field campaign to a turn"),
-        Message("A turn on the snow of {site}", site=chain.site),
-        facts,
-        said if chain.synthetic else "",
-        headline(chain),
-    )
+    kind, title = Message("From a field campaign to a turn"), Message("A turn on the snow of {site}", site=chain.site)
+    return Header(kind, title, facts, said if chain.synthetic else "", headline(chain))
 
 
-def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
-    """Sections of the page with their words, pictures and tables."""
+def turn_page(chain: TurnChain, pictures: Sequence[Picture]) -> str:
+    """HTML of the report of a chain from campaign to turn in the current language."""
     by_name = {picture.name: picture for picture in pictures}
     contacts = prose(
         "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
@@ -153,7 +134,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
         seed=chain.seed,
     )
     scenario = in_sections(scenario_values(chain.nominal.scenario))
-    return [
+    sections = [
         Section("key-results", Message("Key results"), key=key_sentences(chain)),
         Section("snow", Message("The snow that was found"), words=[means], tables=[parameters_table(chain.snow)]),
         Section(
@@ -179,6 +160,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
         Section("scenario", Message("Scenario"), tables=[scenario_table(scenario)]),
         Section("provenance", Message("Provenance"), words=[_provenance(chain)]),
     ]
+    return sheet(_make_header(chain), sections)
 
 
 def _provenance(chain: TurnChain) -> Markup:
@@ -250,24 +232,17 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
 def _contact_row(name: str, run: Run) -> tuple[Any, ...]:
     """Cells of a contact: outcome, length, last speed, turned angle (°), radius, depth (mm), ratio and grip."""
     heading = np.unwrap(run.heading)
-    return (
-        name,
-        outcome_words(run.outcome),
-        run.run_length,
-        float(run.speed[-1]),
-        float(heading[-1] - heading[0]) / DEGREE,
-        median_radius(run),
-        float(np.nanmax(run.skis.edge_depth)) / MM,
-        afterbody_depth_ratio(run),
-        *used_grip(run),
-    )
+    turned, deepest = float(heading[-1] - heading[0]) / DEGREE, float(np.nanmax(run.skis.edge_depth)) / MM
+    motion = (run.run_length, float(run.speed[-1]), turned, results.median_radius(run))
+    on_snow = (deepest, results.afterbody_depth_ratio(run), *results.used_grip(run))
+    return (name, outcome_words(run.outcome), *motion, *on_snow)
 
 
 def shares_table(chain: TurnChain) -> Table:
     """Table of the inputs of the band with their shares in the variance at its end."""
-    shares = band_shares(middle_track(chain.nominal), chain.ensemble)
+    shares = results.band_shares(results.middle_track(chain.nominal), chain.ensemble)
     rows: list[tuple[Any, ...]] = [
-        (row.key, (row.low, row.high), row.in_words, *_shares_of(row.key, shares)) for row in band_inputs(chain)
+        (row.key, (row.low, row.high), row.in_words, *_shares_of(row.key, shares)) for row in results.band_inputs(chain)
     ]
     if shares is not None:
         rest = ((100.0 * direction.left, None) for direction in (shares.aside, shares.ahead))

@@ -12,18 +12,8 @@ from ..._support.messages import Message, outcome_words, template
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...simulation.run import Run
 from ..formatting import counted, html, interval, prose, significant
-from .chain import (
-    BandShares,
-    TurnChain,
-    afterbody_depth_ratio,
-    band_inputs,
-    band_shares,
-    band_width,
-    maximum_distance,
-    median_radius,
-    middle_track,
-    used_grip,
-)
+from . import chain as results
+from .chain import BandShares, TurnChain
 
 ALIKE: Final = 0.002  # relative difference below which two numbers are called the same
 HELD: Final = 0.05  # share of the time with side-slip up to which a ski holds its grip
@@ -67,7 +57,7 @@ def key_sentences(chain: TurnChain) -> list[Markup]:
 
 def headline(chain: TurnChain) -> Markup:
     """Sentence with the turn radius and the precision of the end of the run."""
-    radius = median_radius(chain.nominal)
+    radius = results.median_radius(chain.nominal)
     sentence = template(
         "Turn radius {value} (median); its end is known within {aside} m across and {ahead} m along the track (90 % of "
         "{runs})."
@@ -87,7 +77,7 @@ def plain_sentences(chain: TurnChain) -> list[Markup]:
 
 def _spreads(chain: TurnChain) -> Iterator[Markup]:
     """Sentence that lists the inputs with a measured spread and those with a prior; none without inputs."""
-    lists, inputs = [], list(band_inputs(chain))
+    lists, inputs = [], list(results.band_inputs(chain))
     for spread in ("measured", "prior"):
         *before, last = [_in_words(row.key) for row in inputs if row.spread == spread] or [prose("nothing")]
         joined = prose("{before} and {last}", before=Markup(", ").join(before), last=last)
@@ -127,7 +117,7 @@ def _in_words(key: str) -> Markup:
 
 def _shares(chain: TurnChain) -> BandShares | None:
     """Shares of the inputs in the variance at the band's end; None if there are none, or all are 0."""
-    shares = band_shares(middle_track(chain.nominal), chain.ensemble)
+    shares = results.band_shares(results.middle_track(chain.nominal), chain.ensemble)
     return shares if shares is not None and shares.aside.share.any() else None
 
 
@@ -159,7 +149,7 @@ def _interval_in(unit: float, ends: tuple[float, float] | None) -> str:
 
 def _contact_sentence(name: str, run: Run) -> Markup:
     """Sentence with a contact's outcome, edge-depth ratio, grip utilisation and side slip."""
-    grip, slides = used_grip(run)
+    grip, slides = results.used_grip(run)
     return prose(
         "{name}: {outcome} after {length} m and {time} s. The afterbody/forebody edge-depth ratio is {ratio}; the more "
         "heavily loaded (outer) ski has a grip utilisation of {grip} and side-slips in {slides} % of the time.",
@@ -167,7 +157,7 @@ def _contact_sentence(name: str, run: Run) -> Markup:
         outcome=outcome_words(run.outcome),
         length=significant(run.run_length),
         time=significant(run.simulated_s),
-        ratio=significant(afterbody_depth_ratio(run), 2),
+        ratio=significant(results.afterbody_depth_ratio(run), 2),
         grip=significant(grip, 2),
         slides=significant(None if slides is None else 100.0 * slides, 2),
     )
@@ -182,19 +172,19 @@ def contrast(chain: TurnChain) -> list[Markup]:
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
     """Sentences that compare a contact's radius, grip, edge depths and track with those of the first."""
     names = {"name": name, "first": first}
-    radii = median_radius(run), median_radius(reference)
-    (grip, slips), (other_grip, other_slips) = used_grip(run), used_grip(reference)
+    radii = results.median_radius(run), results.median_radius(reference)
+    (grip, slips), (other_grip, other_slips) = results.used_grip(run), results.used_grip(reference)
     slipping = [label for label, share in ((name, slips), (first, other_slips)) if (share or 0.0) > HELD]
+    distance = significant(results.maximum_distance(run, reference))
     slip = prose("“{who}” side-slips.", who=slipping[0]) if slipping else prose("Grip holds in both.")
+    slip = prose("Both side-slip.") if len(slipping) == 2 else slip
     return [
         prose("The turn with the contact “{name}” or that with “{first}” never turns.", **names)
         if None in radii
         else _compare(_RADII, *radii, **names),
-        Markup(" ").join(
-            [_compare(_GRIPS, grip, other_grip), prose("Both side-slip.") if len(slipping) == 2 else slip]
-        ),
-        _compare(_DEPTH_RATIOS, afterbody_depth_ratio(run), afterbody_depth_ratio(reference)),
-        prose("The tracks lie up to {distance} m apart.", distance=significant(maximum_distance(run, reference))),
+        Markup(" ").join([_compare(_GRIPS, grip, other_grip), slip]),
+        _compare(_DEPTH_RATIOS, results.afterbody_depth_ratio(run), results.afterbody_depth_ratio(reference)),
+        prose("The tracks lie up to {distance} m apart.", distance=distance),
     ]
 
 
@@ -235,7 +225,7 @@ def _compare(sentences: Sequence[str], value: float | None, other: float | None,
 
 def _band_fields(chain: TurnChain) -> dict[str, str]:
     """Fields of sentences, as texts: number of runs of the ensemble, and the widths of their band (m)."""
-    aside, ahead = band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
+    aside, ahead = results.band_width(results.middle_track(chain.nominal), [run.track for run in chain.ensemble])
     runs = counted(len(chain.ensemble), "{count} run", "{count} runs")
     return {"runs": runs, "aside": significant(aside, 2), "ahead": significant(ahead, 2)}
 
