@@ -79,7 +79,7 @@ def replay_of_run(
         run's course).
     Raises ParameterError: the run has no row of time, or the gates are not pairs of finite numbers.
     """
-    setting = _fixed_parts_of_run(run)
+    setting = _setting_of_run(run)
     replay = assemble_replay(_arrays(run), setting, title=title, track=track)
     return replay if gates is None else replace(replay, gates=_gates(gates, setting.slope), gate_times=None)
 
@@ -99,7 +99,7 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
     }  # fmt: skip
 
 
-def _fixed_parts_of_run(run: Run) -> Setting:
+def _setting_of_run(run: Run) -> Setting:
     """Values of a run that do not change over time, and its boots, None without them."""
     scenario = run.scenario
     contact, sledge = scenario.contact, scenario.sledge
@@ -160,6 +160,11 @@ def assemble_replay(
         points = np.array(track.place, dtype=float)
         points[:, 2] = np.where(np.isfinite(points[:, 2]), points[:, 2], _heights(slope, points))
         track = replace(track, place=points)
+    skier = None
+    if setting.body is not None and setting.boots is not None:
+        (height, weight), boots = setting.body, (setting.boots.place, _boot_axes(setting.boots).swapaxes(-1, -2))
+        joints = drawn_joints(height, arrays["place"], arrays["attitude"], boots, arrays["centre"])
+        skier = ReplaySkier(height=height, weight=weight, joints=joints)
     return Replay(
         title=title,
         facts=setting.facts,
@@ -179,7 +184,7 @@ def assemble_replay(
         track=track,
         gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
         gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting),
-        skier=None if setting.body is None or setting.boots is None else _skier(arrays, *setting.body, setting.boots),
+        skier=skier,
     )
 
 
@@ -201,13 +206,6 @@ def _boot_axes(boots: ReplayBoots) -> FloatArray:
     """Axes of both boots in space at each time, (n, 2, 3, 3): ahead, left and off the base as columns."""
     turns = rotation_of(boots.attitude.reshape(-1, 4))
     return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
-
-
-def _skier(arrays: Mapping[str, FloatArray], height: float, weight: float, boots: ReplayBoots) -> ReplaySkier:
-    """Skier of a replay with the joints of a body of this height (m) and weight (N) over time."""
-    axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
-    joints = drawn_joints(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
-    return ReplaySkier(height=height, weight=weight, joints=joints)
 
 
 def _terrain(slope: Terrain, path: FloatArray) -> ReplayTerrain:

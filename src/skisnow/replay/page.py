@@ -14,7 +14,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from .._support.arrays import FloatArray
@@ -25,7 +25,7 @@ from ..simulation.run import Run
 from .from_run import replay_of_run
 from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
 from .run_file import replay_of_file
-from .skier import JOINTS, Part, skier_parts
+from .skier import JOINTS, skier_parts
 
 MODULES: Final = (
     "words.js", "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js",
@@ -83,10 +83,9 @@ def _make_replay(run: Run | Replay | str | Path, title: str | None = None) -> Re
 
 def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENGLISH) -> str:
     """HTML of a replay in a language, with a second run if one is given."""
-    environment = Environment(loader=PackageLoader(_PACKAGE, "static"), autoescape=True, undefined=StrictUndefined)
     named = {"run": run} if ghost is None else {"run": run, "ghost": ghost}
     content = {name: replay_bytes(in_language(replay, language)) for name, replay in named.items()}
-    return environment.get_template("replay.html").render(
+    return page_template("replay.html").render(
         title=run.title,
         language=language,
         said=translations(language).gettext,
@@ -95,6 +94,12 @@ def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENG
         runs=[{"id": name, "base64": base64.b64encode(data).decode()} for name, data in content.items()],
         modules=[{"name": name, "text": _script_text(name)} for name in MODULES],
     )
+
+
+def page_template(name: str) -> Template:
+    """Template of a page with a replay by its file name; text from users is escaped in it."""
+    environment = Environment(loader=PackageLoader(_PACKAGE, "static"), autoescape=True, undefined=StrictUndefined)
+    return environment.get_template(name)
 
 
 @cache
@@ -223,7 +228,13 @@ def _arrays_by_name(replay: Replay) -> dict[str, FloatArray]:
     arrays |= _arrays_of(replay.track, "track_") | {"gate_place": replay.gates, "gate_time": replay.gate_times}
     arrays |= _arrays_of(skis.boots, "boot_") | _arrays_of(replay.terrain, "terrain_") | _arrays_of(skier, "skier_")
     if skier is not None:
-        arrays |= _shape_arrays(skier_parts(skier.height))
+        meshes = [part.mesh for part in skier_parts(skier.height)]
+        arrays |= {
+            "skier_vertices": np.concatenate([mesh.vertices for mesh in meshes]),
+            "skier_colours": np.concatenate([mesh.colours for mesh in meshes]),
+            # of each part they count from its first vertex
+            "skier_triangles": np.concatenate([mesh.pieces for mesh in meshes]).astype(float),
+        }
     return {name: np.asarray(values, dtype=float) for name, values in arrays.items() if values is not None}
 
 
@@ -231,16 +242,6 @@ def _arrays_of(part: _Part | None, prefix: str = "") -> dict[str, FloatArray]:
     """Arrays among the fields of a part of a replay by their names in a file; empty without the part."""
     values = {} if part is None else {field.name: getattr(part, field.name) for field in fields(part)}
     return {f"{prefix}{name}": value for name, value in values.items() if isinstance(value, np.ndarray)}
-
-
-def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
-    """Vertices, colours and triangles of all parts of a skier; triangles count from each part's first vertex."""
-    meshes = [part.mesh for part in parts]
-    return {
-        "skier_vertices": np.concatenate([mesh.vertices for mesh in meshes]),
-        "skier_colours": np.concatenate([mesh.colours for mesh in meshes]),
-        "skier_triangles": np.concatenate([mesh.pieces for mesh in meshes]).astype(float),
-    }
 
 
 def _head(replay: Replay) -> dict[str, Any]:

@@ -13,7 +13,8 @@ from scipy.io import netcdf_file
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SkisnowError, require_range
 from .._support.units import DEGREE
-from .._support.user_files import ContentError, json_value
+from .._support.user_files.json_text import json_value
+from .._support.user_files.text_files import ContentError
 from ..geometry.vectors import axes_of
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
@@ -36,14 +37,7 @@ _PLAIN: Final = (
     "time", "speed", "heading", "turn_radius", "depth", "station", "bending", "twist", "edge_depth",
     "force_per_length", "normal_force", "attitude", "groove_width", "groove_depth", "groove_residual_depth",
 )  # fmt: skip
-_VECTORS: Final = {
-    "place": "{}",
-    "velocity": "velocity_{}",
-    "ski": "ski_{}",
-    "snow_force": "snow_force_{}",
-    "groove": "groove_{}",
-    "groove_left": "groove_left_{}",
-}
+_VECTORS: Final = ("velocity", "ski", "snow_force", "groove", "groove_left")
 
 
 def replay_of_file(
@@ -62,9 +56,9 @@ def replay_of_file(
     try:
         with netcdf_file(path, "r", mmap=False) as file:
             content: Any = file  # its attributes are those of the file
-            patterns = _VECTORS | ({"centre": "centre_{}"} if "centre_x" in content.variables else {})
+            names = (*_VECTORS, "centre") if "centre_x" in content.variables else _VECTORS
             arrays = {name: _values(content, name) for name in _PLAIN}
-            arrays |= {name: _vectors(content, pattern) for name, pattern in patterns.items()}
+            arrays |= {name: _vectors(content, f"{name}_{{}}") for name in names} | {"place": _vectors(content, "{}")}
             sections = json_value(content.scenario.decode("utf-8"))
             values = {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
             boots = _boots(content)

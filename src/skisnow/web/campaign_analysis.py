@@ -14,7 +14,6 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, Final
 
-import numpy as np
 from nicegui import run
 
 from .._support.errors import FieldDataError, SkisnowError, StoreError
@@ -22,7 +21,7 @@ from .._support.messages import Message, in_language, joined, languages
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.problems import ALWAYS_EXCLUDE, Problem
 from ..campaign.reading.campaign_files import FilesInMemory
-from ..campaign.records import Campaign, PenetrationTests, ShearTests
+from ..campaign.records import Campaign
 from ..campaign.store import Journals
 from ..estimation import Analysis, analyse
 from ..estimation.group_comparisons import DIFFERENCE
@@ -147,24 +146,16 @@ def choosable_flags() -> dict[str, str]:
 
 
 def _select_data(campaign: Campaign, choice: Choice) -> Campaign:
-    """Campaign with the experiments and flags of a choice excluded from the analysis."""
+    """Campaign with the flags of a choice; its excluded experiments are cancelled, so that tables still list them."""
     excluding = campaign.excluding if choice.excluding is None else choice.excluding | ALWAYS_EXCLUDE
-    return replace(
-        campaign,
-        excluding=excluding,
-        penetration=_cancel_left_out(campaign.penetration, "penetration.csv", choice),
-        shear=_cancel_left_out(campaign.shear, "shear.csv", choice),
-    )
-
-
-def _cancel_left_out(tests: Any, file: str, choice: Choice) -> Any:
-    """Copy of tests in which the excluded ones are cancelled with a reason, so that the tables still list them."""
-    typed: PenetrationTests | ShearTests | None = tests
-    if typed is None:
-        return None
-    gone = np.array([(file, name) in choice.left_out for name in typed.experiment], dtype=bool)
-    cancelled = tuple(why or (LEFT_OUT if out else "") for why, out in zip(typed.cancelled, gone, strict=True))
-    return replace(typed, cancelled=cancelled)
+    changes: dict[str, Any] = {"excluding": excluding}
+    for kind in ("penetration", "shear"):
+        tests = getattr(campaign, kind)
+        if tests is not None:
+            left_out = [(f"{kind}.csv", name) in choice.left_out for name in tests.experiment]
+            reasons = zip(tests.cancelled, left_out, strict=True)
+            changes[kind] = replace(tests, cancelled=tuple(why or (LEFT_OUT if out else "") for why, out in reasons))
+    return replace(campaign, **changes)
 
 
 MOST_CAMPAIGNS: Final = 6
@@ -224,10 +215,7 @@ class AnalysisCache:
         self._opening = asyncio.Lock()
 
     def cached(self, kind: str, id_: str) -> CampaignSource | None:
-        """Cached state of a campaign (kind: entry or kept), None if it is not cached or changed since.
-
-        Raises StoreError: the store has no such campaign.
-        """
+        """Cached state of a campaign (kind: entry or kept); None if it has changed since or was never read."""
         entry, state = self._subjects.get((kind, id_)), self._state(kind, id_)
         return entry[1] if entry is not None and entry[0] == state else None
 

@@ -182,10 +182,7 @@ class CorrectionSession(EditSession):
 
     @property
     def described(self) -> CampaignFile:
-        """Contents of campaign.toml, or of the sheets in its place.
-
-        Raises FieldDataError or StoreError: the description cannot be read.
-        """
+        """Contents of campaign.toml, or of the sheets in its place; a FieldDataError or StoreError if unreadable."""
         problems: list[Problem] = []
         try:
             text = decode(self._tables.read(CAMPAIGN_FILE) or b"").text
@@ -227,11 +224,7 @@ class CorrectionSession(EditSession):
         return {cell_key(line, column): text for line, cells in rows.items() for column, text in cells.items()}
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
-        """Store a correction, cancellation, undo or attachment; see `Journals.correct`.
-
-        Raises StoreError: as in `Journals.correct`; or the corrections are in a sheet of a workbook, which is not
-            edited.
-        """
+        """Store an entry as `Journals.correct` does; StoreError if the corrections are in a sheet of the workbook."""
         if CORRECTIONS.file in self._tables.places and entry.file != ATTACHMENTS:
             raise StoreError(OWN_SHEET).tag("in_a_workbook")
         standing = self.file_cells(entry.file, entry.test)

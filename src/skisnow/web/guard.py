@@ -23,7 +23,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.types import Message as AsgiMessage
 
 from .._support.messages import Message, translated
-from .._support.user_files import natural_number
+from .._support.user_files.text_files import natural_number
 from .words import language_of_request
 
 STATUS: Final = "skisnow.status"
@@ -92,10 +92,7 @@ class Access:
         object.__setattr__(self, "_names", _LOOPBACK_NAMES | names)
 
     def allows_host(self, host: str) -> bool:
-        """True if a request may name this host: names of this machine; on an open host also any IP address.
-
-        Raises ValueError: the text is not a host.
-        """
+        """True for a name of this machine; on an open host also for any IP address. ValueError: the text is no host."""
         name = (urlsplit(f"//{host}").hostname or "").lower()
         if name in self._names:
             return True
@@ -133,7 +130,12 @@ class Guard:
         headers, is_socket = Headers(scope=scope), scope["type"] == "websocket"
         answer = self._refusing_response(scope, headers)
         if answer is None and not self.access.has_access(headers):
-            answer = Response(status_code=401) if is_socket else await self._token_answer(scope, receive)
+            if is_socket:
+                answer = Response(status_code=401)
+            elif scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
+                answer = await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
+            else:
+                answer = token_page(scope, 401)
         if is_socket and answer is not None:
             await receive()
             await send({"type": "websocket.close", "code": 1008})
@@ -161,18 +163,9 @@ class Guard:
             return PlainTextResponse("This is more than the lab takes in at once.", 413)
         return None
 
-    async def _token_answer(self, scope: Scope, receive: Receive) -> Response:
-        """Response to a request without cookie: the page that asks for the token, or the answer to it."""
-        if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
-            return await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
-        return token_page(scope, 401)
-
 
 def _add_headers(send: Send, scope: Scope) -> Send:
-    """Wrap `send`: answers get the security headers that they lack, and the status that a page set under `STATUS`.
-
-    Without that status the framework answers 500 for every page with an error.
-    """
+    """Wrap `send`: answers get missing security headers and the status in `STATUS`, where the framework answers 500."""
 
     async def sent(message: AsgiMessage) -> None:
         if message["type"] == "http.response.start":

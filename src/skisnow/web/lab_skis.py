@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO, Any, Final, NamedTuple
@@ -11,7 +12,7 @@ from typing import IO, Any, Final, NamedTuple
 from .._support.errors import OutputError, ParameterError
 from .._support.messages import Message
 from .._support.staging import write_file
-from .._support.user_files import ContentError, toml_text, toml_values
+from .._support.user_files.text_files import ContentError, toml_text, toml_values
 from ..ski import Ski, read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
@@ -30,6 +31,11 @@ _DEVICES: Final = re.compile(r"(?i)con|prn|aux|nul|com[0-9]|lpt[0-9]")
 _NAME_LINE: Final = re.compile(r"(?m)^name\s*=.*$")
 
 
+def menu_with_nothing(names: Iterable[str]) -> dict[str, str]:
+    """Options of a menu of skis to compare with: nothing, and all names."""
+    return {NOTHING: Message("nothing"), **{name: name for name in names}}
+
+
 class LabSkis:
     """Skis of a lab: those of the catalogue, and saved ones, each a folder with a file and an optional table."""
 
@@ -45,10 +51,7 @@ class LabSkis:
         return [*ski_names(), *(name for name in self.saved() if name not in ski_names())]
 
     def word(self, name: str) -> str:
-        """Word for a ski in scenarios and commands: its name in the catalogue, or the path of its file.
-
-        Raises ParameterError: the lab has no such ski.
-        """
+        """Word for a ski in scenarios: its name in the catalogue, or its path; ParameterError for an unknown ski."""
         if name in ski_names():
             return name
         if name not in self.saved():
@@ -68,11 +71,7 @@ class LabSkis:
         return place.read_text(encoding="utf-8"), table.read_text(encoding="utf-8") if table.is_file() else ""
 
     def save_texts(self, name: str, text: str, table: str) -> None:
-        """Save the text of a ski's file and table under a new name.
-
-        Raises ParameterError: the name is not valid or exists already, or the texts are not those of a ski.
-        Raises OutputError: the folder cannot be written.
-        """
+        """Save the texts of a ski's file and table under a new name; ParameterError if one of them is not valid."""
         self.require_new(name)
         line = f"name = {toml_text(name)}"
         named = _NAME_LINE.sub(lambda _: line, text, count=1) if _NAME_LINE.search(text) else f"{line}\n{text}"
@@ -110,11 +109,12 @@ class LabSkis:
 
 
 def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
-    """Ski from the texts of its file and table, and the warnings of the reader as text.
-
-    Raises ParameterError: as `read_ski`; or the text names another file than its table.
-    """
-    _require_no_other_file(text)
+    """Ski of the texts of a ski file and its table, and warnings of the reader; ParameterError if not valid."""
+    with contextlib.suppress(ContentError):  # which the reader reports with its line
+        if toml_values(text).get("table", TABLE) != TABLE:
+            raise ParameterError(
+                '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"'
+            ).tag("wrong_table", file=FILE, table=TABLE)
     with TemporaryDirectory(prefix="skisnow-ski-") as name:
         place = Path(name) / FILE
         place.write_text(text, encoding="utf-8", newline="")
@@ -144,18 +144,6 @@ def texts_of_ski(ski: Ski) -> tuple[str, str]:
         place = Path(name) / FILE
         write_ski(ski, place)
         return place.read_text(encoding="utf-8"), place.with_name(TABLE).read_text(encoding="utf-8")
-
-
-def _require_no_other_file(text: str) -> None:
-    """Reject a ski file whose table is a file of another name; errors of its TOML are left to the reader."""
-    try:
-        keys = toml_values(text)
-    except ContentError:
-        return  # the reader reports it with its line
-    if keys.get("table", TABLE) != TABLE:
-        raise ParameterError(
-            '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"'
-        ).tag("wrong_table", file=FILE, table=TABLE)
 
 
 def _without_folder(folder: str, message: str) -> str:
@@ -206,11 +194,7 @@ def _numbers(words: str, text: str) -> list[float]:
 
 
 def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], limits: Limits) -> SkiTexts:
-    """Read the files of a ski in a separate process.
-
-    uploads: names and contents of a TOML file with its table.
-    Raises ParameterError: the files do not contain exactly one ski.
-    """
+    """Ski of uploaded files by name and content, read in another process; ParameterError unless they are one ski."""
     with TemporaryDirectory(prefix="skisnow-ski-") as folder:
         unpacking = Unpacking(Path(folder) / "ski", limits)
         unpacking.folder.mkdir()

@@ -14,7 +14,8 @@ from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import joined, template
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
-from .._support.user_files import ContentError, read_record
+from .._support.user_files.json_text import read_record
+from .._support.user_files.text_files import ContentError
 from ..replay.replay import Replay, ReplayTrack, measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
@@ -102,10 +103,7 @@ class TrackFolders:
         return placings
 
     def file(self, name: str) -> tuple[Path, Placing]:
-        """File of a track, and its position.
-
-        Raises ParameterError: the lab has no such track, or its folder is damaged.
-        """
+        """File of a track, and its placing; ParameterError if there is no such track or its folder is damaged."""
         if name not in self.names():
             raise ParameterError("there is no track {name!r} here. Choose one from the list").tag(
                 "unknown_track", name=name
@@ -120,11 +118,7 @@ class TrackFolders:
         return places[0], placing
 
     def remove(self, name: str) -> None:
-        """Remove a track.
-
-        Raises ParameterError: the lab has no such track.
-        Raises OutputError: the folder cannot be written.
-        """
+        """Remove a track; ParameterError if there is no such track, OutputError if it cannot be removed."""
         place = self.file(name)[0].parent
         try:
             shutil.rmtree(place)
@@ -132,10 +126,7 @@ class TrackFolders:
             raise cannot_write(place, error) from error
 
     def beside(self, name: str, replay: Replay, *, read: Callable[..., ReplayTrack] | None = None) -> ReplayTrack:
-        """Read a track in the axes of a run, by the function `read` (default: `track_on_slope` in this process).
-
-        Raises ParameterError: the lab has no such track, or it cannot be placed.
-        """
+        """Track in the axes of a run, by `read` (default: in this process); ParameterError if it cannot be placed."""
         place, placing = self.file(name)
         angle = replay.tilt if replay.profile is None else None
         return (read or track_on_slope)(place, placing, angle)
@@ -249,11 +240,7 @@ class LabCourses:
         return "course.file", str((self._folder / name).absolute())
 
     def keep(self, called: str, content: IO[bytes]) -> str:
-        """Store a course that can be read; returns its name.
-
-        Raises ParameterError: the file is not a course, is too large, or there are too many.
-        Raises OutputError: the folder cannot be written.
-        """
+        """Store a course; returns its name. ParameterError: it is not a course, too large, or there are too many."""
         suffix = PurePosixPath(called.lower()).suffix
         if suffix not in COURSE_SUFFIXES:
             raise ParameterError("{file} is not a course: choose a .csv or .gpx file").tag(

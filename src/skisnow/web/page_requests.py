@@ -41,12 +41,7 @@ LONGEST: Final = 200  # maximum length of a request key
 
 @dataclass(frozen=True, slots=True)
 class PageRequest:
-    """Data of lab.js that the browser sends with an event.
-
-    number: number of the request if the page waits for its outcome.
-    once: unique key of the request, which is the same if it is sent again.
-    text: text of the field, if it is also sent.
-    """
+    """Data of lab.js in an event: number of a request that waits for its outcome, its unique key, text of the field."""
 
     number: int | None = None
     once: str | None = None
@@ -65,10 +60,7 @@ def current_request() -> PageRequest:
 
 
 def event_handler(act: Act) -> Callable[[GenericEventArguments], None]:
-    """Event handler that runs an action once per request and sends its outcome to the waiting browser.
-
-    act: action that returns False for a rejected input; the browser then keeps the typed text.
-    """
+    """Event handler that runs an action once per request and sends its outcome; False keeps the typed text."""
     client = ui.context.client  # the element may be deleted by the action
 
     def answered(event: GenericEventArguments) -> None:
@@ -187,10 +179,7 @@ def newest_first(paths: Iterable[Path]) -> list[Path]:
 
 @contextmanager
 def hidden_folder(parent: Path) -> Iterator[Path]:
-    """Yield a new temporary folder in another one, to fill and then to rename; removed unless it was renamed.
-
-    Raises OutputError: it cannot be made.
-    """
+    """Yield a new hidden folder to fill and rename; otherwise it is removed. OutputError if it cannot be made."""
     try:
         parent.mkdir(parents=True, exist_ok=True)
         made = Path(mkdtemp(prefix=".partial-", dir=parent))
@@ -258,24 +247,22 @@ def upload_form(address: str) -> ui.element:
     return ui.element("form").props(f'method=post action="{address}" enctype="multipart/form-data"')
 
 
+def labelled_input(key: str, label: str, id_: str, further: str = "") -> ui.element:
+    """Add a field with its label to a plain form, by default for a text; ``further``: HTML attributes of the field."""
+    with ui.element("div").classes("labelled"):
+        with ui.element("label").props(f"for={id_}"):
+            Words(label)
+        return ui.element("input").props(f"id={id_} name={key} {further}".rstrip())
+
+
 def file_input(key: str, label: str, id_: str, further: str = "") -> None:
     """Add a field for files with its label to a plain form; ``further``: HTML attributes of the field."""
-    with ui.element("div").classes("labelled"):
-        _add_label(id_, label)
-        ui.element("input").props(f"type=file id={id_} name={key} required {further}".rstrip())
+    labelled_input(key, label, id_, f"type=file required {further}")
 
 
 def text_input(key: str, label: str, id_: str, further: str = "") -> None:
     """Add a field for a text with its label to a plain form; ``further``: HTML attributes of the field."""
-    with ui.element("div").classes("labelled"):
-        _add_label(id_, label)
-        ui.element("input").props(f"id={id_} name={key} {further}".rstrip()).classes("act plain")
-
-
-def _add_label(id_: str, label: str) -> None:
-    """Add the label of an input with this id."""
-    with ui.element("label").props(f"for={id_}"):
-        Words(label)
+    labelled_input(key, label, id_, further).classes("act plain")
 
 
 def submit_button(text: str, *, kind: str = "", address: str = "") -> None:

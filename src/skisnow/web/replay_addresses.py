@@ -10,15 +10,15 @@ from typing import Any, Final
 from urllib.parse import quote
 
 from fastapi import FastAPI
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.datastructures import FormData
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import ENGLISH, Message, joined, translations
-from .._support.user_files import ContentError, read_json, read_record
-from ..replay.page import MODULES, STYLE, in_language, page_words, replay_bytes, static_text
+from .._support.user_files.json_text import read_json, read_record
+from .._support.user_files.text_files import ContentError
+from ..replay.page import MODULES, STYLE, in_language, page_template, page_words, replay_bytes, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
 from ..report.track.page import file_of_track, page_of_folders, page_of_track, page_of_tracks
@@ -71,10 +71,7 @@ class RunFolders:
         return self.folder / name
 
     def replay(self, name: str, track: str = "") -> Replay:
-        """Replay of a run, with a measured track if one is named, which is read in a separate process.
-
-        Raises ParameterError: the lab has no such run, or it cannot be shown.
-        """
+        """Replay of a run, with a measured track if one is named; ParameterError if it cannot be shown."""
         place = self.folder_of(name)
         ski, title = _ski_of_job(place / JOB), self.title(name)
         alone = replay_of_file(place, title=title, ski=ski)
@@ -174,10 +171,7 @@ def program_file(name: str) -> Response:
 
 def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGLISH, *, title: str = "") -> str:
     """HTML of the replay of a run, with a second run and a measured track if they are named."""
-    environment = Environment(
-        loader=PackageLoader("skisnow.replay", "static"), autoescape=True, undefined=StrictUndefined
-    )
-    return environment.get_template("show.html").render(
+    return page_template("show.html").render(
         title=title or run,
         language=language,
         said=translations(language).gettext,

@@ -23,7 +23,8 @@ from typing import ClassVar, Final, Literal, TypeAlias
 from .._support.errors import ParameterError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, outcome_words, template
 from .._support.staging import write_file
-from .._support.user_files import ContentError, read_record
+from .._support.user_files.json_text import read_record
+from .._support.user_files.text_files import ContentError
 from ..simulation.simulated_run import REMEDIES
 
 NamedFile: TypeAlias = tuple[str, bytes]
@@ -155,21 +156,15 @@ class Runs:
         for key, (file, content) in (files or {}).items():
             write_file(self.folder / name / file, content)
             every[key] = str((self.folder / name / file).absolute())
-        title = self._numbered(title) if title else ""
+        if title:
+            titles = {job.title for job in self.jobs()}
+            title = next(numbered for number in count(1) if (numbered := f"{title}, {number}") not in titles)
         job = Job(name, scenario, every, asked_at.isoformat(), given=given, language=language, title=title)
         self._keep(job)
         return job
 
-    def _numbered(self, words: str) -> str:
-        """Title for a new job: the words with the first number that no other title has with them."""
-        titles = {job.title for job in self.jobs()}
-        return next(title for number in count(1) if (title := f"{words}, {number}") not in titles)
-
     def rename(self, name: str, title: str) -> None:
-        """Change the title of a job.
-
-        Raises ParameterError: the title is blank or longer than 80 characters, or there is no such job.
-        """
+        """Change a job's title; ParameterError for a blank title, one of more than 80 characters, or an unknown job."""
         title = " ".join(title.split())
         job = self._find_job(name)
         if not 0 < len(title) <= LONGEST_TITLE:
@@ -183,10 +178,7 @@ class Runs:
         return next((job for job in self.jobs() if job.name == name), None)
 
     def cancel(self, name: str) -> None:
-        """Remove a waiting job from the queue, or end the running one and keep its results.
-
-        Raises ParameterError: the job is neither waiting nor running.
-        """
+        """Remove a waiting job, or end the running one and keep its results; ParameterError if it is neither."""
         job = self._find_job(name)
         if job is not None and job.state == "waiting":
             self._keep(replace(job, state="cancelled", said="It had not begun."))

@@ -59,15 +59,14 @@ def range_words(key: Quantity) -> str:
     english, shown = key.meaning.split("; "), str(Message(key.meaning)).split("; ")
     clauses = [text for clause, text in zip(english, shown, strict=True) if not _OF_FILES.search(clause)]
     is_named = not clauses or not key.meaning or key.meaning.startswith(key.label)
-    words = [] if is_named else [_as_sentence("; ".join(clauses))]
+    words = []
+    if not is_named:
+        text = "; ".join(clauses)
+        begins_with_word = text[:2].isalpha() and text[:2].isascii()  # a symbol keeps its case
+        words = [f"{text[0].upper()}{text[1:]}." if begins_with_word else f"{text}."]
     if not (key.choices or key.kind == "switch"):
         words.append(str(Message("Allowed: {allowed}.", allowed=key.allowed)))
     return " ".join(words)
-
-
-def _as_sentence(words: str) -> str:
-    """A sentence with a capital letter, unless it begins with a symbol."""
-    return f"{words[0].upper()}{words[1:]}." if words[:2].isalpha() and words[:2].isascii() else f"{words}."
 
 
 def typed_form(value: Any) -> str:
@@ -125,10 +124,7 @@ class ScenarioField:
         return self.text != self.before
 
     def check(self) -> InputValue:
-        """Check the value and return it; an error is shown at the field.
-
-        Raises ParameterError: the value is not valid for this input.
-        """
+        """Checked value; if it is not valid, the field shows why and a ParameterError is raised."""
         self.refuse("")
         try:
             if not self.text:
@@ -215,20 +211,16 @@ class SnowChoice:
         return bool(self._menu.value == self._numbers)
 
     @property
-    def gives_hardness(self) -> bool:
-        """True if the chosen snow gives H_V."""
-        return not self.is_numbers
-
-    @property
     def gives_stress(self) -> bool:
         """True if the chosen snow gives S_f; a campaign without shear tests does not."""
-        return self.gives_hardness and (self._found is None or self._found.snow.failure_shear_stress is not None)
+        return not self.is_numbers and (self._found is None or self._found.snow.failure_shear_stress is not None)
+
+    def given(self, hardness: str, stress: str) -> dict[str, bool]:
+        """For the inputs H_V and S_f, by their keys: True if the chosen snow gives it, so that it needs no field."""
+        return {hardness: not self.is_numbers, stress: self.gives_stress}
 
     def chosen(self) -> ChosenSnow | None:
-        """The chosen snow; None for the numbers on the page.
-
-        Raises ParameterError: the chosen campaign gives no snow.
-        """
+        """The chosen snow; None for the numbers on the page. ParameterError: the campaign gives no snow."""
         if self.is_numbers:
             return None
         if self._found is None:
@@ -309,10 +301,7 @@ def _campaigns(lab: Lab) -> dict[str, str]:
 
 
 def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources | None = None) -> ScenarioFile:
-    """Read a scenario with changes as on the command line; ``sources``: skis and snows in memory.
-
-    Raises ParameterError: a value is not valid.
-    """
+    """Read a scenario with changes as on the command line and skis in `sources`; ParameterError if one is not valid."""
     from ..scenario.keys import parse_change
 
     parsed = dict(parse_change(f"{name}={text}") for name, text in changes.items())
@@ -320,10 +309,7 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
 
 
 def campaign_snow(lab: Lab, key: str) -> Analysis:
-    """Analysis of a campaign of the lab; ``key``: its kind (entry or kept) and id, joined by "-".
-
-    Raises ParameterError: the campaign gives no snow.
-    """
+    """Analysis of a campaign, whose key is its kind (entry or kept), "-" and its id; ParameterError without a snow."""
     numbers = analyse_files(files_in_memory(lab, *key.split("-", 1)), Choice())
     if isinstance(numbers, Refusal):
         raise ParameterError("this campaign gives no snow yet. {said}").tag("no_snow", said=numbers.said)
@@ -331,10 +317,7 @@ def campaign_snow(lab: Lab, key: str) -> Analysis:
 
 
 def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
-    """Bytes of results.json of a campaign, and its snow in words, of the site that the changes of a scenario name.
-
-    Raises ParameterError: a value is not valid.
-    """
+    """Bytes of results.json, and in words the snow of the site in the changes; ParameterError if not valid."""
     sources, site = Sources(), changes.get("snow.site") or None
     sources.take_snow(analysis.snow(site), results=RESULTS, site=site)
     resolved = require_scenario(scenario, {**changes, "snow.results": RESULTS}, sources).scenario

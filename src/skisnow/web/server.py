@@ -41,10 +41,7 @@ if TYPE_CHECKING:
 
 
 def require_allowed(host: str, token: str | None) -> None:
-    """Reject a host that other machines can reach without a token.
-
-    Raises ParameterError: the host is not this machine's loopback address and there is no token, or the token is blank.
-    """
+    """Raise a ParameterError for a host that other machines can reach without a token, and for a blank token."""
     if token is not None and not token.strip():
         raise ParameterError("the token is blank; use one that is hard to guess, or remove --token").tag("blank_token")
     if token is None and not is_loopback(host):

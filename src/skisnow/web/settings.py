@@ -18,12 +18,7 @@ BUILD_S: Final = 2.0 * STALL_S  # maximum time to build a page (s)
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Limits of an upload; for comparison, a campaign with a million readings has 60 MB.
-
-    upload_bytes: maximum size of the body of a request.
-    unpacked_bytes: maximum size of all unpacked files of a zip.
-    files: maximum number of files, packed or not.
-    """
+    """Limits of an upload: bytes of a request, bytes of all unpacked files of a zip, number of files, packed or not."""
 
     upload_bytes: int = 100 * MEGABYTE
     unpacked_bytes: int = 400 * MEGABYTE
@@ -32,10 +27,7 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Lab:
-    """Store, folder and settings of a lab, the argument of each page's ``add_page``.
-
-    runs: folder of runs, studies, skis, tracks and courses.
-    """
+    """Store, folder of runs, studies, skis, tracks and courses, and limits of uploads of a lab."""
 
     store: Store
     runs: Path

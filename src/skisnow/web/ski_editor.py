@@ -46,16 +46,12 @@ class SkiEditor:
         self._begun = sentence("", "quiet")
         heading(Message("Whole curves"), 3)
         with ui.element("div").classes("factors"):
-            self._factors = {key: self._add_factor_field(words) for key, words in FACTORS.items()}
+            self._factors = {key: field(f"{words} ×", ONE, numeric=True) for key, words in FACTORS.items()}
+        for factor in self._factors.values():
+            factor.on("change", changed)
         self._text, self._csv = self._add_file_fields(text, table)
         self._base = self._file_and_table_text()
         self._show_origin(name)
-
-    def _add_factor_field(self, words: str) -> ui.input:
-        """Add a field for a factor, 1 at first."""
-        made = field(f"{words} ×", ONE, numeric=True)
-        made.on("change", self._changed)
-        return made
 
     def _add_file_fields(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
         """Add text areas for the ski's file and table, and the button that draws them."""
@@ -136,10 +132,7 @@ class SkiEditInput:
 
 
 def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> tuple[Ski, str]:
-    """Ski of an edit, with another name if one is given, and warnings of the reader.
-
-    Raises ParameterError: a field is not an allowed number, or the file is not valid.
-    """
+    """Ski of an edit, renamed if a name is given, and warnings of the reader; ParameterError if it is not valid."""
     ski, warned = ski_of_texts(edit.text, edit.table)
     factors = {
         key: typed_number(Message("the factor of {factors}", factors=FACTORS[key]), text)
@@ -181,7 +174,13 @@ class SkiImportForms:
         self._added = added
         with folded(Message("Add a measured ski")).classes("adding"):
             heading(Message("From its files"), 3)
-            _file_form()
+            sentence(Message("The .toml file of a ski and the table that it names."), "quiet")
+            with upload_form(SKI_UPLOAD):
+                with ui.element("div").classes("acts"):
+                    file_input("files", Message("Files of the ski"), "ski-files", 'multiple accept=".toml,.csv"')
+                with ui.element("div").classes("acts"):
+                    text_input(NAME, Message("Another name for it"), f"ski-{NAME}")
+                submit_button(Message("Add the files"))
             heading(Message("From three widths"), 3)
             sentence(
                 Message(
@@ -225,14 +224,3 @@ class SkiImportForms:
                 self._fields[key].error = said(Message("a number is needed here"))
                 self._fields[key].run_method("select")
                 self._said.set_text(Message("Not saved: {words}", words=words))
-
-
-def _file_form() -> None:
-    """Add the form that uploads a ski file with its table, and optionally another name."""
-    sentence(Message("The .toml file of a ski and the table that it names."), "quiet")
-    with upload_form(SKI_UPLOAD):
-        with ui.element("div").classes("acts"):
-            file_input("files", Message("Files of the ski"), "ski-files", 'multiple accept=".toml,.csv"')
-        with ui.element("div").classes("acts"):
-            text_input(NAME, Message("Another name for it"), f"ski-{NAME}")
-        submit_button(Message("Add the files"))

@@ -22,7 +22,8 @@ from .._support.staging import write_file
 from ..studies import Study, StudyTable
 from .page_requests import hidden_folder
 from .runs import JOB, Job, Runs, new_name
-from .study_fields import CARVE, MOST_POINTS, STUDY, TABLE, StudyQuestion
+from .scenario_fields import typed_form
+from .study_fields import CARVE, MOST_POINTS, STUDY, TABLE, StudyQuestion, study_keys
 from .uploads import files_below
 from .words import replaced
 
@@ -34,10 +35,7 @@ _AGAIN_S: Final = 3.0  # time (s) before a new attempt: a process of an earlier 
 
 
 class Studies(Runs):
-    """Queue and history of studies: a job's scenario is its subject, the changes its fixed, given its varied inputs.
-
-    folder: folder of the lab's runs; studies have a subfolder.
-    """
+    """Queue and history of studies in a subfolder; a job has the fixed inputs as changes, the varied as given."""
 
     progress_lines = re.compile(r"^\d+ of \d+ points")
 
@@ -45,10 +43,7 @@ class Studies(Runs):
         super().__init__(folder / FOLDER)
 
     def ask_for(self, question: StudyQuestion, language: str = ENGLISH) -> Job:
-        """Store a study at the end of the queue; ``language``: language of its map.
-
-        Raises ParameterError: the study is not valid; the message is that of the command.
-        """
+        """Store a study, whose map has a language, at the end of the queue; ParameterError if it is not valid."""
         from ..studies import read_study
 
         asked_at = datetime.now(UTC)
@@ -69,26 +64,21 @@ class Studies(Runs):
             made.rename(self.folder / name)  # it becomes a study with its job.json
         with in_language(language):
             given = question.varied_words()
-        fixed = question.fixed_words()
+        keys = study_keys(question.of)
+        fixed = {name: typed_form(value) for name, value in question.fixed.items() if name in keys}
         job = Job(name, question.of, fixed, asked_at.isoformat(), given=given, points=points, language=language)
         self._keep(job)
         return job
 
     def go_on(self, name: str) -> None:
-        """Add a cancelled or failed study to the queue again; finished points are kept.
-
-        Raises ParameterError: the study is neither cancelled nor failed.
-        """
+        """Add a cancelled or failed study to the queue again, with its finished points; ParameterError for others."""
         job = self._find_job(name)
         if job is None or job.state not in ("cancelled", "failed"):
             raise ParameterError("this study waits, is running or is done; it cannot be continued").tag("not_stopped")
         self._keep(replace(job, state="waiting", said=""))
 
     def file(self, name: str, file: str) -> Path:
-        """Path of a file of a study; other names are rejected.
-
-        Raises ParameterError: the study does not exist or does not have the file yet.
-        """
+        """Path of a file of a study; ParameterError if there is no such study or it does not have the file yet."""
         names = {job.name for job in self.jobs()}
         if name not in names or file not in (STUDY, TABLE, FIGURE) or not (self.folder / name / file).is_file():
             raise ParameterError("there is no {file!r} of a study {study!r} here. Choose one from the list").tag(
@@ -143,15 +133,9 @@ class Studies(Runs):
 
 
 def _finished(partial: Path) -> int:
-    """Number of computed points in the file of an unfinished study."""
-    if not partial.is_file():
-        return 0
-    with contextlib.suppress(SkisnowError):
-        rows = KeptRows.read(partial)
-        try:
-            return len(rows)
-        finally:
-            rows.close()
+    """Number of computed points in the file of an unfinished study; 0 if the file is missing or damaged."""
+    with contextlib.suppress(SkisnowError), contextlib.closing(KeptRows.read(partial)) as rows:
+        return len(rows)
     return 0
 
 

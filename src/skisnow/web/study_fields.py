@@ -13,7 +13,7 @@ from nicegui import ui
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
-from .._support.user_files import natural_number, toml_text
+from .._support.user_files.text_files import natural_number, toml_text
 from ..carving.question import CARVE_KEYS
 from ..parameters import Quantity
 from .elements import choice, field, named, sentence
@@ -83,10 +83,6 @@ class StudyQuestion:
         )
         varied = (f"{_toml_key(name)} = {values.toml()}" for name, values in self.varied.items())
         return "\n".join([*lines, "", "[fixed]", *fixed, "", "[grid]", *listed, *varied, ""])
-
-    def fixed_words(self) -> dict[str, str]:
-        """Texts of the fixed inputs that are keys of the subject, by key."""
-        return {name: typed_form(value) for name, value in self.fixed.items() if name in study_keys(self.of)}
 
     def varied_words(self) -> str:
         """Ranges, and inputs that were chosen by name, in words."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
@@ -12,7 +12,7 @@ from typing import IO, Final
 
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import FormData, UploadFile
+from starlette.datastructures import FormData
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
@@ -49,7 +49,12 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
         missing = Message("no file was chosen; choose the files of a campaign, its folder, or a zip of it")
         uploads = uploaded_files(form, "files", missing)
         try:
-            return f"/?added={_add_campaign(lab, uploads)}"
+            with TemporaryDirectory(prefix="skisnow-upload-") as folder:
+                for number, upload in enumerate(uploads):
+                    with (Path(folder) / str(number)).open("xb") as file:
+                        shutil.copyfileobj(upload.file, file)
+                names = [upload.filename or "" for upload in uploads]  # they are unpacked in another process
+                return f"/?added={confined(BOUNDS, add_uploaded, lab.store.path, folder, names, lab.limits)}"
         except ParameterError as error:
             name = uploads[0].filename or ""
             if error.code != "no_campaign" or len(uploads) > 1 or not name.lower().endswith(ENDINGS):
@@ -69,16 +74,6 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
     too_many = Message("Nothing was stored: at most {files} files at once can be imported.", files=lab.limits.files)
     add_upload(app, IMPORT, store, max_files=lab.limits.files, too_many=too_many)
     app.add_api_route("/export/{kind}/{id_}.zip", export, response_model=None)
-
-
-def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
-    """Add uploaded files to the store, unpacked in another process; returns the campaign's id."""
-    with TemporaryDirectory(prefix="skisnow-upload-") as name:
-        names = [upload.filename or "" for upload in uploads]
-        for number, upload in enumerate(uploads):
-            with (Path(name) / str(number)).open("xb") as file:
-                shutil.copyfileobj(upload.file, file)
-        return confined(BOUNDS, add_uploaded, lab.store.path, name, names, lab.limits)
 
 
 def files_in_memory(lab: Lab, kind: str, id_: str) -> FilesInMemory:

@@ -28,6 +28,7 @@ from starlette.responses import Response
 
 from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
 from .._support.messages import Message, joined
+from .._support.user_files.text_files import shown
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import CampaignFiles
 from ..campaign.reading.workbook_files import unfold_workbooks
@@ -52,19 +53,11 @@ class Unpacking:
         self._files = 0
 
     def take(self, name: str, content: IO[bytes]) -> None:
-        """Write one uploaded file.
-
-        Raises ParameterError: the name is not valid on every system, leads out of the folder or exists, or a limit is
-            exceeded.
-        """
+        """Write one uploaded file; ParameterError if its name is unsafe or exists, or a limit is exceeded."""
         self._write_file(name, iter(lambda: content.read(CHUNK_BYTES), b""))
 
     def take_zip(self, packed: IO[bytes]) -> None:
-        """Unpack an uploaded zip file; sizes are counted while reading.
-
-        Raises ParameterError: as in `take`; or the file is not a zip file, is damaged, encrypted or not deflated, or
-            contains links.
-        """
+        """Unpack an uploaded zip file; errors as in `take`, and for a damaged or encrypted file or one with links."""
         with _damage_errors():
             archive = zipfile.ZipFile(packed)
         with archive:
@@ -78,7 +71,12 @@ class Unpacking:
 
     def _write_file(self, name: str, pieces: Iterable[bytes]) -> None:
         """Write an uploaded file; ParameterError if its name is unsafe or exists, or a limit is exceeded."""
-        place = self._safe_place(name)
+        path = name.replace("\\", "/")
+        if (why := unsafe_because(path, for_windows=True)) is not None:
+            raise ParameterError("the file {file} is not accepted: {why}").tag(
+                "not_taken_in", file=repr(shown(name, 79)), why=why
+            )
+        place = self.folder.joinpath(*PurePosixPath(path).parts)
         self._files += 1
         if self._files > self.limits.files:
             raise self._too_many_files()
@@ -94,22 +92,13 @@ class Unpacking:
                     file.write(piece)
         except (FileExistsError, NotADirectoryError) as error:
             raise ParameterError("two files of the upload are called {file}").tag(
-                "same_name", file=shown(name)
+                "same_name", file=repr(shown(name, 79))
             ) from error
 
     def _too_many_files(self) -> ParameterError:
         """Error for more files than are accepted at once."""
         most = self.limits.files
         return ParameterError("more than {most} files at once are not accepted").tag("too_many_files", most=most)
-
-    def _safe_place(self, name: str) -> Path:
-        """Path of a file below the folder; ParameterError if its name is not safe."""
-        path = name.replace("\\", "/")
-        if (why := unsafe_because(path, for_windows=True)) is not None:
-            raise ParameterError("the file {file} is not accepted: {why}").tag(
-                "not_taken_in", file=shown(name), why=why
-            )
-        return self.folder.joinpath(*PurePosixPath(path).parts)
 
 
 def _is_plain(member: zipfile.ZipInfo) -> bool:
@@ -138,12 +127,6 @@ def _damage_errors() -> Iterator[None]:
         yield
     except Exception as error:
         raise ParameterError(_DAMAGED).tag("damaged") from error
-
-
-def shown(name: str) -> str:
-    """Name of an uploaded file for a message: short, and with printable characters only."""
-    plain = "".join(letter if letter.isprintable() else "?" for letter in name)
-    return repr(plain if len(plain) <= 80 else plain[:79] + "…")
 
 
 def campaign_folder(folder: Path) -> Path:
@@ -193,11 +176,7 @@ UNDESCRIBED: Final = Message(
 
 
 def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
-    """Store a campaign of uploaded files, which are numbered in a folder; returns its id.
-
-    Raises ParameterError: a file is rejected, or the files do not contain a campaign.
-    Raises StoreError: the store cannot be written.
-    """
+    """Store a campaign of uploaded files, numbered in a folder; returns its id. ParameterError: it is no campaign."""
     unpacking = Unpacking(Path(place) / "campaign", limits)
     unpacking.folder.mkdir()
     for number, name in enumerate(names):

@@ -50,13 +50,7 @@ class ChartLine:
 
 
 class LineChart(Element, component="line_chart.js"):
-    """A chart of lines over one quantity.
-
-    x, y: labels of the axes with units.
-    words: description for screen readers; the range of the values is added.
-    height: height in pixels.
-    ends: texts at the left and right ends of the horizontal axis.
-    """
+    """Chart of lines with axis labels, a description for screen readers, a height (px) and texts at the ends of x."""
 
     def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
         super().__init__()
@@ -173,10 +167,7 @@ class JobCard:
 
 
 class JobList:
-    """Cards of all jobs of a queue, the newest first, updated every second.
-
-    card: factory of the card of a job, from the queue, the job and an `Act`.
-    """
+    """Cards of all jobs of a queue, newest first, updated every second; `card` makes one from queue, job and `Act`."""
 
     def __init__(self, runs: Any, card: Callable[[Any, Any, Act], JobCard], nothing: str) -> None:
         self._runs: Runs = runs

@@ -153,10 +153,7 @@ def plain_number(text: str) -> str:
 
 
 def typed_number(what: str, text: str) -> float:
-    """Finite number in a typed text with a decimal point or comma.
-
-    Raises ParameterError: the text is not a number; the message begins with `what`.
-    """
+    """Finite number in a text with a decimal point or comma; otherwise a ParameterError that begins with `what`."""
     try:
         value = float(plain_number(text))
     except ValueError:
@@ -221,9 +218,6 @@ def number_text(number: str, client: Client | None = None) -> str:
 
 
 def minute_words(at: datetime | str) -> str:
-    """Day and time in the time zone of the server, in the format of the page's language.
-
-    at: a time, or an ISO 8601 text; UTC without a time zone.
-    """
+    """Local day and time of the server in the format of the page's language, of an ISO 8601 text or a time in UTC."""
     time = datetime.fromisoformat(at) if isinstance(at, str) else at
     return translated((time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(), language_of())

@@ -168,20 +168,14 @@ def changes(
             asking_button(Message("Undo: {done}", done=_entry_words(test.undoable, view)), undo)
         if not test.cancelled and not cancelled and test.rows:
             asks = asking_button(Message("Cancel this test"), ask_cancel)
-    _add_history(test, view)
-
-
-def _add_history(test: ReplayedTest, view: TableView) -> None:
-    """Add a folded list of a test's entries with time and person; undone ones are marked."""
-    if not test.history:
-        return
     lines = []
     for entry in test.history:
         parts = (minute_words(entry.at), entry.who, _entry_words(entry, view))
         words: str = joined([part for part in parts if part], " · ")
         lines.append(Message("{entry} (undone)", entry=words) if entry.sequence in test.undone else words)
-    with folded(Message("History of {name}", name=test.name)), ui.element("ol"):
-        add_items(lines)
+    if lines:
+        with folded(Message("History of {name}", name=test.name)), ui.element("ol"):
+            add_items(lines)
 
 
 _DONE: Final = {

@@ -135,10 +135,7 @@ Field: TypeAlias = ui.input | ui.select
 def checked_fields(
     form: TableForm, fields: Mapping[str, Field], *, conversions: Mapping[str, UnitConversion] | None = None
 ) -> dict[str, str] | None:
-    """Checked texts of fields, by column, as the table stores them; None if one is rejected: its field shows why.
-
-    conversions: from the units of fields to those of their columns (default: they are the same).
-    """
+    """Checked texts by column, converted from the units of fields; None if one is rejected: its field shows why."""
     cells: dict[str, str] = {}
     units = conversions or {}
     for column, typed in fields.items():
@@ -175,17 +172,15 @@ MOST: Final = 10_000
 
 
 def receive_offline_readings(session: EditSession, changed: Callable[[set[str]], object]) -> None:
-    """Store readings that the browser kept without a connection, each once.
-
-    changed: function that is called with the names of the changed series.
-    """
+    """Store readings that the browser kept offline, each once; `changed` is called with the names of their series."""
     client = ui.context.client
 
     def take(event: GenericEventArguments) -> None:
         records = event.args if isinstance(event.args, list) else []
         answers, series = [], set[str]()
         for record in records[:MOST]:
-            once, refusal = _once_of_reading(record), ""
+            sent = record.get("once") if isinstance(record, dict) else None
+            once, refusal = sent if isinstance(sent, str) and len(sent) <= LONGEST else "", ""
             try:
                 series.add(_stored(session, record, once))
             except (StoreError, ParameterError) as error:
@@ -199,12 +194,6 @@ def receive_offline_readings(session: EditSession, changed: Callable[[set[str]],
         client.run_javascript(f"lab.resent({json.dumps(answers)})")
 
     ui.on("resent", take)
-
-
-def _once_of_reading(record: Any) -> str:
-    """Key `once` of a reading that the browser kept offline; "" if it is missing or too long."""
-    once = record.get("once") if isinstance(record, dict) else None
-    return once if isinstance(once, str) and 0 < len(once) <= LONGEST else ""
 
 
 def _sent_cells(record: Any) -> dict[str, str]:

@@ -127,14 +127,20 @@ class SeriesForm:
                 sentence(f"{self._head['site']} · {self._head['tool']} · {angle}°", "quiet")
             if test.cancelled:
                 sentence(Message("Cancelled: {cancelled}", cancelled=test.cancelled), "bad")
-            loads = self._loads(test)
+            steps_in_set = [f"{load:g}" for load in self._view.session.described.load_steps]
+            further = [load for load in steps_in_set if test.row_under(load) is None]
+            loads = sorted(dict.fromkeys([*(row.cells["load_N"] for row in test.rows), *further]), key=float)
             rising = [Step(load) for load in loads]
             self._draw_fields(test, rising, unstored)
             self._ask = ui.element("div")
             self._corrections.begin(test.name, self._ask)
             self._then = asking_button(Message("Next series"), self._next, "main then")
             button(Message("Loads in N or kg"), None, "small switch-kg")
-            self._unloading_fields(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
+            steps = [Step(load, UNLOADING) for load in loads[-2::-1]]
+            if steps:
+                begun = any(test.row_under(*step) or step in unstored for step in steps)
+                with folded(Message("Discs taken off one by one"), is_open=begun):
+                    self._draw_fields(test, steps, unstored)
             self._waiting = DepthsAfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
             self._waiting.draw(rising, waiting, self._ask)
         with self._view.changes_place:
@@ -149,14 +155,6 @@ class SeriesForm:
             readings.props["data-head"] = json.dumps(self._head)
             for step in steps:
                 self._readings[step] = self._add_reading(test, step, unstored.get(step))
-
-    def _unloading_fields(self, test: ReplayedTest, steps: list[Step], unstored: Mapping[Step, str]) -> None:
-        """Add fields for the depths of unloading, in a section that is closed without such a reading."""
-        if not steps:
-            return
-        begun = any(test.row_under(*step) or step in unstored for step in steps)
-        with folded(Message("Discs taken off one by one"), is_open=begun):
-            self._draw_fields(test, steps, unstored)
 
     def _unstored(self) -> dict[Step, str]:
         """Unstored texts of new and changed readings, by step."""
@@ -203,13 +201,6 @@ class SeriesForm:
             show = partial(self.show, test.name, self._head)
             changes(self._view, test, self._ask, show, is_unanswered=self._corrections.is_unanswered)
         self._list.show(test.name)
-
-    def _loads(self, test: ReplayedTest) -> list[str]:
-        """Loads of the disc set and of entered readings, in rising order."""
-        steps = [f"{load:g}" for load in self._view.session.described.load_steps]
-        entered = [row.cells["load_N"] for row in test.rows]
-        also = [load for load in steps if test.row_under(load) is None]
-        return sorted(dict.fromkeys([*entered, *also]), key=float)
 
     def _add_reading(self, test: ReplayedTest, step: Step, unstored: str | None) -> ReadingField:
         """Add the depth field of a step; it is read-only if the test was cancelled."""

@@ -53,10 +53,7 @@ class SingleForm:
         return True
 
     def show(self, name: str, *, row: str = "") -> None:
-        """Show a row of a test for correction, or the form of a new one if there is no such test.
-
-        row: number of its entry (default: the first row).
-        """
+        """Show a row of a test, by the number of its entry or the first; the form of a new test if there is none."""
         test = self._view.test(name)
         if not test.rows:
             self.begin()

@@ -10,7 +10,7 @@ from nicegui import background_tasks, run, ui
 
 from ..._support.errors import FieldDataError, SkisnowError, StoreError
 from ..._support.messages import Message
-from ..._support.user_files import natural_number
+from ..._support.user_files.text_files import natural_number
 from ...campaign import QUALITY_FLAGS
 from ...campaign.reading.table_forms import PENETRATION, SHEAR, TableForm
 from ...campaign.store import NewEntry, OvertakenError, Reading, ReplayedTest
@@ -29,10 +29,7 @@ CORRECTED: Final = Message("Corrected; the first reading is kept.")
 
 
 class TableView:
-    """View of one table on a page: stores entries about its tests, shows their outcome and live results.
-
-    form, below: names of the sections of the form and of the changes for screen readers.
-    """
+    """Form, status, changes and live results of a table; `form`, `below`: names of sections for screen readers."""
 
     def __init__(self, session: EditSession, file: str, *, form: str, below: str) -> None:
         self.session = session
@@ -277,11 +274,7 @@ class LiveResults:
                 self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
 
     def follow(self, name: str, site: str, *, in_progress: bool = False) -> None:
-        """Compute and show the results of a test; results for an older state are dropped.
-
-        name, site: name and site of the test.
-        in_progress: True if readings are still missing: flags about missing readings are not shown.
-        """
+        """Compute and show the newest results of a test; `in_progress`: flags about missing readings are not shown."""
         self._wanted = (name, site, MISSING_YET if in_progress else frozenset())
         if not self._working:
             self._working = True

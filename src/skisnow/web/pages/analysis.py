@@ -73,7 +73,6 @@ def add_page(lab: Lab) -> None:
             view.settled.set()
 
         ui.context.client.on_delete(closed)
-        view.show_cached()
         background_tasks.create(view.compute(), name="analysis")
 
     @app.get("/report/{key}/report.html")
@@ -169,12 +168,8 @@ class AnalysisView:
         self._choices = named(ui.element("section"), Message("Included data"))
         self._tables = named(ui.element("section"), Message("Tables"))
         self._figures = named(ui.element("section"), Message("Figures"))
-
-    def show_cached(self) -> None:
-        """Show a cached analysis at once."""
-        result = self.subject.cached(self._choice) if self.subject is not None else None
-        if result is not None:
-            self._show_result(result)
+        if subject is not None and (cached := subject.cached(self._choice)) is not None:
+            self._show_result(cached)
 
     async def compute(self) -> None:
         """Compute the numbers, then draw figure by figure; results for an older choice are dropped."""

@@ -20,7 +20,7 @@ from ...report.formatting import significant
 from ...report.summaries import ski_verdict
 from ...ski.ski_file import Sources
 from ..elements import Words, button, choice, link, named, page_frame
-from ..lab_skis import NOTHING, LabSkis
+from ..lab_skis import NOTHING, LabSkis, menu_with_nothing
 from ..scenario_fields import ChosenSnow, SnowChoice
 from ..settings import Lab
 from ..widgets import STYLES, ChartLine, LineChart, add_ski_table, save_buttons
@@ -168,7 +168,7 @@ class Slider:
 class CarvedTurn:
     """Base of pages with sliders and results of a carved turn; while one is computed only the latest change waits.
 
-    A page adds its inputs, calls `add_status`, `add_facts` and `add_charts`, and implements `asked`.
+    A page adds its inputs, calls `add_results` and `add_charts`, and implements `asked`.
     """
 
     facts: ClassVar[Mapping[str, tuple[Message, str]]] = FACTS
@@ -198,12 +198,9 @@ class CarvedTurn:
             for key, (words, stops, start) in sliders.items():
                 self.sliders[key] = Slider(words, stops, start, self.ask)
 
-    def add_status(self) -> None:
-        """Add the line that shows the outcome, at first that it is being computed."""
+    def add_results(self) -> None:
+        """Add the line that shows the outcome, at first that it is being computed, and the empty table of results."""
         self._status = Words(COMPUTING).classes("status").props("role=status")
-
-    def add_facts(self) -> None:
-        """Add the empty element for the table of results."""
         self._facts = ui.element("div").classes("table")
 
     def add_charts(self) -> None:
@@ -219,15 +216,12 @@ class CarvedTurn:
 
     def update_snow(self) -> None:
         """Show only the sliders of snow numbers that the chosen snow does not give, and compute again."""
-        for key, is_given in zip(OF_SNOW, (self.snow.gives_hardness, self.snow.gives_stress), strict=True):
+        for key, is_given in self.snow.given(*OF_SNOW).items():
             self.sliders[key].place.set_visibility(not is_given)
         self.ask()
 
     def inputs(self, skis: Iterable[Any], unloading_ratio: float) -> CarveInputs:
-        """Questions for skis, each a word or keys, in the turn that the sliders state on the chosen snow.
-
-        Raises ParameterError: the chosen campaign gives no snow.
-        """
+        """Questions for skis, each a word or keys, by sliders and chosen snow; ParameterError if that gives no snow."""
         snow = self.snow.chosen()
         turn: dict[str, Any] = {key: float(self.sliders[key].value) for key in SLIDERS}
         turn["unloading_ratio"] = unloading_ratio
@@ -344,15 +338,14 @@ class _CarvePage(CarvedTurn):
             with ui.element("section"):
                 with ui.element("div").classes("fields large"):
                     self._ski = choice(Message("Ski"), names, first if first in names else names[0])
-                    others = {NOTHING: Message("nothing"), **{name: name for name in names}}
+                    others = menu_with_nothing(names)
                     self._other = choice(Message("Compared with"), others, other if other in others else NOTHING)
                     self._ratio = choice(Message("Unloading ratio k_u/H_V"), RATIOS, "10")
                     self.snow = SnowChoice(lab, NUMBERS, self.update_snow)
                 link(Message("Add or change a ski"), "/skis")
                 self.add_sliders(SLIDERS)
             with ui.element("section"):
-                self.add_status()
-                self.add_facts()
+                self.add_results()
                 self.add_download_buttons("carve")
             with ui.element("section").classes("curves"):
                 self.add_charts()

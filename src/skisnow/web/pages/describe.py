@@ -9,7 +9,7 @@ from nicegui.events import GenericEventArguments
 
 from ..._support.errors import FieldDataError, ParameterError, SkisnowError
 from ..._support.messages import Message, template
-from ..._support.user_files import toml_values
+from ..._support.user_files.text_files import toml_values
 from ...campaign.problems import Problem
 from ...campaign.reading.campaign_file import SHAPES
 from ...campaign.store import Journals, NewEntry, OvertakenError

@@ -13,7 +13,7 @@ from ...carving.edge_line import BOOT_REACH
 from ...design import Design
 from ...ski.ski_file import keys_text
 from ..elements import Outcome, button, choice, error_sentence, field, option_texts, page_frame
-from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
+from ..lab_skis import FILE, NOTHING, LabSkis, menu_with_nothing, ski_of_texts
 from ..scenario_fields import SnowChoice
 from ..settings import Lab
 from ..words import said, typed_number
@@ -119,31 +119,26 @@ class _DesignPage(CarvedTurn):
             with ui.element("section"):
                 with ui.element("div").classes("fields large"):
                     self._ski = choice(Message("Ski"), list(own), first if first in own else next(iter(own)))
-                    others = _other_skis(skis)
+                    others = menu_with_nothing(skis.names())
                     self._other = choice(
                         Message("Compared with"), others, other if other in others else str(self._ski.value)
                     )
                     self.snow = SnowChoice(lab, NUMBERS, self.update_snow)
                 self.add_sliders(SHAPES | SLIDERS)
-                self._add_search()
-                self._add_saving()
+                self._add_search_and_saving()
             with ui.element("section").classes("curves"):
-                self.add_status()
-                self.add_facts()
+                self.add_results()
                 self.add_charts()
                 self.add_download_buttons("design")
         self._ski.on_value_change(self._reset_sliders)
         self._other.on_value_change(self.ask)
 
-    def _add_search(self) -> None:
-        """Add the field of the wanted radius and the button that finds the design."""
+    def _add_search_and_saving(self) -> None:
+        """Add the wanted radius with its search, and the name of the designed ski with buttons to save or download."""
         with ui.element("div").classes("acts"):
             self._target = field(Message("Wanted radius (m)"), "12", numeric=True)
             self._search = button(Message("Find the design"), self._find_radius, "main")
         self._found = Outcome()
-
-    def _add_saving(self) -> None:
-        """Add the name of the designed ski, and the buttons that save or download it."""
         with ui.element("div").classes("acts"):
             self._name = field(Message("New name"))
             button(Message("Save in the lab"), self._save_ski, once=True)
@@ -207,10 +202,5 @@ class _DesignPage(CarvedTurn):
         except SkisnowError as error:
             self._saved.say(Message("Not saved: {error}", error=error_sentence(error)), bad=True)
             return
-        self._other.set_options(option_texts(_other_skis(self._skis)))
+        self._other.set_options(option_texts(menu_with_nothing(self._skis.names())))
         self._saved.say(Message("Saved: {name}. Carve and Simulate have it too.", name=name))
-
-
-def _other_skis(skis: LabSkis) -> dict[str, str]:
-    """Options of the menu of skis to compare with: nothing, and all names."""
-    return {NOTHING: Message("nothing"), **{name: name for name in skis.names()}}

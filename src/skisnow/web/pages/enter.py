@@ -51,22 +51,17 @@ def add_page(lab: Lab) -> None:
                 Attachments(view, lambda: entry_list.current)
             if table == FILE:
                 head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-                _show_series(view, entry_list, test, head)
+                series = SeriesForm(view, entry_list)
+                receive_offline_readings(session, series.show_offline_readings)
+                if test and not view.test(test).history and _is_head(view, head):
+                    series.show(test, head)  # a new series, loaded again before its first reading
+                elif test and view.test(test).rows:
+                    series.show(test)
+                else:
+                    series.begin()
             else:
                 receive_offline_readings(session, lambda _: None)
                 SingleForm(view, entry_list).show(test, row=row)
-
-
-def _show_series(view: TableView, entry_list: EntryList, test: str, head: dict[str, str]) -> None:
-    """Show the form of a series with rows, or of a new one; with a valid `head` it has begun already."""
-    series = SeriesForm(view, entry_list)
-    receive_offline_readings(view.session, series.show_offline_readings)
-    if test and not view.test(test).history and _is_head(view, head):
-        series.show(test, head)  # a new series, loaded again before its first reading
-    elif test and view.test(test).rows:
-        series.show(test)
-    else:
-        series.begin()
 
 
 def _is_head(view: TableView, head: dict[str, str]) -> bool:

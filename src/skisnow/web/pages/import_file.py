@@ -124,7 +124,8 @@ class _ImportPage:
                 heading(Message("Questions"))
                 for question in reversed(questions.values()):
                     self._add_question(question)
-            if problems := _further_problems(proposal):
+            asked_problems = [question.problem for question in proposal.questions]
+            if problems := [problem for problem in proposal.problems if problem not in asked_problems]:
                 heading(Message("Errors"))
                 with ui.element("ul").classes("errors"):
                     add_items(problem.message for problem in problems)
@@ -289,12 +290,6 @@ def _choice_words(text: str) -> str:
     """Text of an answer: yes, no, left out, a table or a column."""
     words = {"yes": Message("yes"), "no": Message("no"), NONE: LEFT_OUT}
     return said(words[text] if text in words else TABLES.get(f"{text}.csv", label(text)))
-
-
-def _further_problems(proposal: Proposal) -> list[Problem]:
-    """Errors of a proposal that belong to none of its questions."""
-    asked_problems = [question.problem for question in proposal.questions]
-    return [problem for problem in proposal.problems if problem not in asked_problems]
 
 
 def _show_rows(table: ImportedTable) -> None:

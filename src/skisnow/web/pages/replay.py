@@ -10,7 +10,8 @@ from nicegui import app, ui
 
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message
-from ..._support.user_files import ContentError, read_record
+from ..._support.user_files.json_text import read_record
+from ..._support.user_files.text_files import ContentError
 from ...report.formatting import counted
 from ...report.track.summary import GPX_FILE, TURNS_FILE
 from ..elements import Outcome, Words, button, error_sentence, folded, heading, link, named, page_frame, sentence
@@ -63,7 +64,13 @@ def add_page(lab: Lab) -> None:
             _add_track_form(is_open=not placings)
             if placings:
                 heading(Message("Measured tracks"), 2)
-                _two_tracks_form(list(placings))
+            if len(placings) > 1:
+                first, second, *_ = placings
+                names_by_value = {name: name for name in placings}
+                with ui.element("form").props(f'action="{TURNS}" method="get"').classes("acts"):
+                    _select("track", Message("Track"), names_by_value, first, form="pair")
+                    _select("other", Message("Compared with"), names_by_value, second, form="pair")
+                    submit_button(Message("Compare the tracks"))
             for name, placing in placings.items():
                 files = {TURNS_FILE: Message("Turns as CSV")}
                 if placing.is_geodetic:
@@ -75,7 +82,11 @@ def add_page(lab: Lab) -> None:
                         named(table, Message("{words}: {name}", words=words, name=name))
                     _add_removal_button(tracks, name)
             for name in names:
-                _add_run(runs.folder_of(name), name, runs.title(name))
+                with ui.element("section").classes("card"):
+                    heading(runs.title(name), 2)
+                    sentence(_outcome_words(runs.folder_of(name)), "quiet")
+                    with ui.element("div").classes("acts"):
+                        named(link(Message("Watch"), show_address(name), "main"), Message("Watch {name}", name=name))
 
 
 def _add_removal_button(tracks: TrackFolders, name: str) -> None:
@@ -96,16 +107,7 @@ def _add_removal_button(tracks: TrackFolders, name: str) -> None:
     failed = Outcome()
 
 
-def _add_run(place: Path, name: str, title: str) -> None:
-    """Add to the page the card of a run, with extent and outcome from its folder `place` and a link to its replay."""
-    with ui.element("section").classes("card"):
-        heading(title, 2)
-        sentence(_in_words(place), "quiet")
-        with ui.element("div").classes("acts"):
-            named(link(Message("Watch"), show_address(name), "main"), Message("Watch {name}", name=name))
-
-
-def _in_words(place: Path) -> str:
+def _outcome_words(place: Path) -> str:
     """Line with the extent and outcome of a run from summary.json."""
     try:
         run = read_record(place / "summary.json", FinishedRun)
@@ -127,16 +129,6 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
         _select("track", Message("Measured track next to it"), {name: name for name in (NONE, *tracks)}, track or NONE)
         submit_button(Message("Watch together"), kind="main")
         submit_button(Message("Compare tracks and times"), address=GATES)
-
-
-def _two_tracks_form(names: list[str]) -> None:
-    """Add the form that compares two measured tracks from above; nothing for fewer than two."""
-    if len(names) < 2:
-        return
-    with ui.element("form").props(f'action="{TURNS}" method="get"').classes("acts"):
-        _select("track", Message("Track"), {name: name for name in names}, names[0], form="pair")
-        _select("other", Message("Compared with"), {name: name for name in names}, names[1], form="pair")
-        submit_button(Message("Compare the tracks"))
 
 
 def _select(key: str, text: str, names: dict[str, str], chosen: str, *, form: str = "replay") -> None:

@@ -98,7 +98,12 @@ def add_page(lab: Lab) -> None:
     runs = Runs(lab.runs)
     app.on_startup(lambda: background_tasks.create(runs.work(), name="runs"))
     app.on_shutdown(runs.end)
-    add_upload(app, COURSE_UPLOAD, lambda form: _keep_course(LabCourses(lab.runs), form), max_fields=2)
+
+    def keep_course(form: FormData) -> str:
+        upload = uploaded_files(form, "file", Message("no file was chosen; choose the file of a course"))[0]
+        return address(PATH, course=LabCourses(lab.runs).keep((upload.filename or "")[:200], upload.file))
+
+    add_upload(app, COURSE_UPLOAD, keep_course, max_fields=2)
 
     @ui.page(PATH)
     def simulate(course: str = "") -> None:
@@ -174,7 +179,7 @@ class _Form:
 
     def _show_numbers(self) -> None:
         """Show the fields of the snow's numbers only as far as the chosen snow does not give them."""
-        for name, is_given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
+        for name, is_given in self._snow.given(*OF_SNOW).items():
             self._fields[name].place.set_visibility(not is_given)
 
     async def ask(self) -> None:
@@ -281,12 +286,6 @@ def add_expert_fields(
 def _has_skier(values: Mapping[str, Any]) -> bool:
     """True if a scenario has a skier."""
     return values.get("skier.steers") is not None
-
-
-def _keep_course(courses: LabCourses, form: FormData) -> str:
-    """Store an uploaded course; returns the address of the page with this course."""
-    upload = uploaded_files(form, "file", Message("no file was chosen; choose the file of a course"))[0]
-    return address(PATH, course=courses.keep((upload.filename or "")[:200], upload.file))
 
 
 def _course_form() -> None:

@@ -163,14 +163,13 @@ class _Form:
 
         return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
 
-    def _numbers_from_snow(self) -> dict[str, bool]:
-        """For each number of the snow by key: True if the chosen snow states it, so that it needs no field."""
-        names = CARVE_SNOW if self._is_carve else SCENARIO_SNOW
-        return dict(zip(names, (self._snow.gives_hardness, self._snow.gives_stress), strict=True))
+    def _given_by_snow(self) -> dict[str, bool]:
+        """For each number of the snow by key: True if the chosen snow gives it, so that it needs no field."""
+        return self._snow.given(*(CARVE_SNOW if self._is_carve else SCENARIO_SNOW))
 
     def _follow(self) -> None:
         """Show the fields that apply to the chosen inputs, and the number of points."""
-        varied, from_snow = {axis.name for axis in self._axes}, self._numbers_from_snow()
+        varied, from_snow = {axis.name for axis in self._axes}, self._given_by_snow()
         for name, field in self._fields.items():
             field.place.set_visibility(name not in varied and not from_snow.get(name))
         try:
@@ -199,7 +198,7 @@ class _Form:
         if len({axis.name for axis in axes}) < len(axes):
             raise ParameterError("the first and the second input are the same; choose another one").tag("same_input")
         varied = {axis.name: axis.range() for axis in axes}
-        from_snow = self._numbers_from_snow()
+        from_snow = self._given_by_snow()
         for name in varied:
             if from_snow.get(name):
                 raise ParameterError(

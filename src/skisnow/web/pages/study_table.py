@@ -15,7 +15,6 @@ from ..._support.messages import ENGLISH, Message, outcome_words
 from ...report.formatting import significant
 from ...studies import Study, StudyTable
 from ..elements import Words, add_head, choice, error_sentence, heading, link, named, page_frame, plain_page, sentence
-from ..runs import Job
 from ..scenario_fields import field_label, typed_form
 from ..settings import Lab
 from ..studies import FIGURE, Studies
@@ -70,7 +69,11 @@ def add_page(lab: Lab) -> None:
             raise ParameterError("the lab is about to end").tag("lab_ends")
         with page_frame(Message("Study"), here=HERE):
             job = next((job for job in studies.jobs() if job.name == name), None)
-            _show_inputs(job)
+            if job is not None:
+                keys = study_keys(job.scenario)
+                fixed = (f"{field_label(keys[name])}: {number_text(value)}" for name, value in job.changes.items())
+                sentence(job.given, "quiet")
+                sentence("; ".join(fixed), "quiet")
             with ui.element("div").classes("acts"):
                 link(Message("Download everything"), _file_address(name, ALL), "main")
                 link(Message("Download the table"), _file_address(name, TABLE))
@@ -88,17 +91,6 @@ def add_page(lab: Lab) -> None:
         except ParameterError as error:
             return plain_page(Message("This cannot be shown"), error_sentence(error), 404, request)
         return zip_download(await run_in_threadpool(lambda: zip_of(studies.files_of(folder))), "study.zip")
-
-
-def _show_inputs(job: Job | None) -> None:
-    """Show the varied and the fixed inputs of a study's job; nothing for None."""
-    if job is not None:
-        keys = study_keys(job.scenario)
-        sentence(job.given, "quiet")
-        sentence(
-            "; ".join(f"{field_label(keys[name])}: {number_text(value)}" for name, value in job.changes.items()),
-            "quiet",
-        )
 
 
 def _show_map(name: str, language: str) -> None:
@@ -153,10 +145,10 @@ class _ResultsView:
         """Line of the points that share values; only lines that are not in the background have a name."""
         rows = [row for row in self._table.rows if self._line_of(row) == values]
         rows.sort(key=lambda row: row[self._x])
-        words = [
-            value if name == SKI else f"{said(self._input_name(name))}: {_short(value)}"
-            for name, value in zip(self._others, values, strict=True)
-        ]
+        words = []
+        for name, value in zip(self._others, values, strict=True):
+            text = number_text(f"{value:.4g}") if isinstance(value, float) else typed_form(value)  # as in the map
+            words.append(value if name == SKI else f"{said(self._input_name(name))}: {text}")
         x, y = ([row[column] for row in rows] for column in (self._x, result))
         return ChartLine(x, y, style, name="" if style == BEHIND else ", ".join(words))
 
@@ -179,11 +171,6 @@ class _ResultsView:
                 ),
                 "note",
             )
-
-
-def _short(value: Any) -> str:
-    """Text of a varied input's value with four digits, as in the map."""
-    return number_text(f"{value:.4g}") if isinstance(value, float) else typed_form(value)
 
 
 def _add_row(row: dict[str, Any], columns: list[str]) -> None:
