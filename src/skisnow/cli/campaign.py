@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -29,11 +30,11 @@ def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 def check(options: argparse.Namespace) -> int:
     """Print the problems of a campaign; returns exit status 1 if one of them is an error."""
     problems, notes = _find_problems(options.campaign)
-    errors, warnings, flags = (_count_of_severity(problems, severity) for severity in ("error", "warning", "flag"))
+    counts = Counter(problem.severity for problem in problems)
     if options.json:
         entries = [problem.as_dict() for problem in problems]
-        counts = {"errors": errors, "warnings": warnings, "flags": flags}
-        print(json.dumps(counts | {"problems": entries}, ensure_ascii=False))
+        numbers = {f"{severity}s": counts[severity] for severity in ("error", "warning", "flag")}
+        print(json.dumps(numbers | {"problems": entries}, ensure_ascii=False))
     else:
         from ..campaign.problems import lines_of
 
@@ -41,14 +42,13 @@ def check(options: argparse.Namespace) -> int:
             print(line)
         for note in notes:
             print(f"note: {note}")
-        warnings = _count_of_severity([problem for problem in problems if problem.needs_action], "warning")
-        print(f"errors: {errors}, warnings: {warnings}, flags: {flags}")
-    return 1 if errors else 0
+        warnings = sum(problem.severity == "warning" and problem.needs_action for problem in problems)
+        print(f"errors: {counts['error']}, warnings: {warnings}, flags: {counts['flag']}")
+    return 1 if counts["error"] else 0
 
 
 def _find_problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
     """Problems of a campaign with its quality flags, and notes of the analysis; only problems if it has errors."""
-    from .._support.errors import FieldDataError
     from ..campaign import Problem, read_campaign
     from ..estimation import campaign_notes, quality_flags
 
@@ -58,11 +58,6 @@ def _find_problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
         except FieldDataError as error:
             return [problem for problem in error.problems if isinstance(problem, Problem)], ()
         return [*campaign.problems, *quality_flags(campaign)], campaign_notes(campaign)
-
-
-def _count_of_severity(problems: list[Problem], severity: str) -> int:
-    """Number of problems of this severity."""
-    return sum(problem.severity == severity for problem in problems)
 
 
 def add_analyse(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -171,7 +166,7 @@ def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def import_file(options: argparse.Namespace) -> int:
     """Import a file as a campaign, or undo an import, and print the written or removed files."""
-    from ..campaign.importing.answers import save_template
+    from ..campaign.importing.answers import Answers, read_template, save_template
     from ..campaign.importing.folder import undo_import, write_import
     from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 
@@ -181,7 +176,10 @@ def import_file(options: argparse.Namespace) -> int:
     if options.file is None or options.out is None:
         raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.").tag("missing_option")
     asks = not options.yes and sys.stdin.isatty()
-    proposal = _ask_questions(options, _read_answers(options), asks=asks)
+    answers = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
+    if options.template is not None:  # options override the answers of the template
+        answers = read_template(options.template).updated(answers)
+    proposal = _ask_questions(options, answers, asks=asks)
     if proposal.problems:
         raise FieldDataError(proposal.problems)
     print("\n".join(preview_lines(proposal)))
@@ -195,14 +193,6 @@ def import_file(options: argparse.Namespace) -> int:
     print(f"Written: {', '.join(str(options.out / name) for name in proposal.files)}")
     print(f"Then: skisnow analyse {options.out}")
     return 0
-
-
-def _read_answers(options: argparse.Namespace) -> Answers:
-    """Answers of the options, which override those of the template."""
-    from ..campaign.importing.answers import Answers, read_template
-
-    from_options = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
-    return from_options if options.template is None else read_template(options.template).updated(from_options)
 
 
 def _ask_questions(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:
@@ -230,7 +220,10 @@ def _ask_in_terminal(question: Question) -> str:
 
 
 def preview_lines(proposal: Proposal) -> list[str]:
-    """Lines for the terminal with the first rows of each table as they are stored, and H_V of one series."""
+    """Lines for the terminal with the first rows of each table as they are stored, and H_V (N/mm³) of one series."""
+    from ..campaign.reading.campaign import campaign_of_files
+    from ..estimation.result_rows import first_hardness
+
     lines = []
     for table in proposal.tables:
         columns = [choice.column for choice in table.columns if choice.column]
@@ -239,13 +232,5 @@ def preview_lines(proposal: Proposal) -> list[str]:
         lines += [f"  {', '.join(dict.fromkeys(('site', *columns)))}"]
         for row in table.rows[:PREVIEW_ROWS]:
             lines.append("  " + ", ".join(row.cells.get(name, "") for name in dict.fromkeys(("site", *columns))))
-    return [*lines, *_hardness_lines(proposal)]
-
-
-def _hardness_lines(proposal: Proposal) -> list[str]:
-    """Line with H_V (N/mm³) of a proposed campaign's first series; an empty list without one."""
-    from ..campaign.reading.campaign import campaign_of_files
-    from ..estimation.result_rows import first_hardness
-
     first = first_hardness(campaign_of_files(proposal.files))
-    return [f"H_V of {first[0]}: {first[1]:.3f} N/mm³"] if first is not None else []
+    return [*lines, f"H_V of {first[0]}: {first[1]:.3f} N/mm³"] if first is not None else lines

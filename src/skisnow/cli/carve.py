@@ -13,7 +13,6 @@ from .options import add_language, number, whole_number
 from .output import Progress, prepare_figure, print_json, print_warnings
 
 if TYPE_CHECKING:
-    from ..carving.answer import CarveAnswer
     from ..design import Design, DesignTask
 
 
@@ -26,7 +25,6 @@ def add_carve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "of three ways: --H-V-N-per-mm3 with --S-f-N-per-mm2, --results, or --published.",
     )
     _add_question(parser)
-    _add_snow(parser)
     _add_choices(parser)
     sensitivity: dict[str, Any] = {"action": "append", "nargs": "?", "const": "", "metavar": "PARAMETER"}
     parser.add_argument(
@@ -43,7 +41,7 @@ def add_carve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 
 def _add_question(parser: argparse.ArgumentParser) -> None:
-    """Add the options for skis, edge angle, load and moment."""
+    """Add the options for skis, edge angle, load, moment and snow."""
     named: dict[str, Any] = {"action": "append", "required": True, "metavar": "NAME|FILE"}
     parser.add_argument("--ski", **named, help="a ski of the catalogue or a ski file; several times to compare")
     angle = "angle of the base under the boot to the snow, 0 to 85"
@@ -53,10 +51,6 @@ def _add_question(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--moment-Nm", type=number("N m"), metavar="N_M", help="at the boot, positive presses the tip down"
     )
-
-
-def _add_snow(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the snow."""
     snow = parser.add_argument_group("snow")
     snow.add_argument("--H-V-N-per-mm3", type=number("N/mm³"), metavar="H_V", help="snow hardness")
     stress = "failure shear stress; beside --results or --published only where those have none"
@@ -97,10 +91,12 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 def carve_ski(options: argparse.Namespace) -> int:
     """Solve the carved turn of each ski, print and draw it; returns exit status 1 if an equilibrium was not found."""
-    from ..carving.answer import answers_dict, sensitivities_dict
+    from ..carving.answer import answer_question, answers_dict, sensitivities_dict
+    from ..carving.question import CARVE_KEYS, carve_question
 
     prepare_figure(options.figure)
-    answers = _compute_answers(options)
+    question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
+    answers = [answer_question(carve_question(question | {"ski": ski})) for ski in options.ski]
     several = len(answers) > 1
     lines = [f"{a.question.ski}: {text}" if several else text for a in answers for text in a.warnings]
     print_warnings(dict.fromkeys(lines))
@@ -124,7 +120,11 @@ def carve_ski(options: argparse.Namespace) -> int:
         print(carve_summary(result))
         for answer, derivative in zip(answers, derivatives, strict=False):
             print(_sensitivity_table(answer.ski.name, derivative))
-    return _exit_status(answers)
+    lost = [str(answer.question.ski) for answer in answers if answer.equilibrium.outcome == "not_converged"]
+    if lost:
+        text = f"skisnow: no equilibrium was found for {', '.join(lost)}: these numbers are not a solution."
+        print(text, file=sys.stderr)
+    return 1 if lost else 0
 
 
 def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
@@ -134,26 +134,6 @@ def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
         relative = "" if row["percent_per_percent"] is None else f"{row['percent_per_percent']:9.4f}"
         lines.append(f"  {row['output']:26} {row['parameter']:26} {row['derivative']:12.6g} {relative:>9}")
     return "\n".join(lines)
-
-
-def _exit_status(answers: list[CarveAnswer]) -> int:
-    """1, after a message on standard error, if an answer did not converge; otherwise 0."""
-    lost = [answer.question.ski for answer in answers if answer.equilibrium.outcome == "not_converged"]
-    if lost:
-        print(
-            f"skisnow: no equilibrium was found for {', '.join(map(str, lost))}: these numbers are not a solution.",
-            file=sys.stderr,
-        )
-    return 1 if lost else 0
-
-
-def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
-    """Answers of carve for each ski that the options name."""
-    from ..carving.answer import answer_question
-    from ..carving.question import CARVE_KEYS, carve_question
-
-    question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
-    return [answer_question(carve_question(question | {"ski": ski})) for ski in options.ski]
 
 
 def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -59,12 +59,6 @@ def add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Write a model for one.",
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
-    _add_fmu(kinds)
-    _add_mjcf(kinds)
-
-
-def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
-    """Add the subcommand ``fmu``."""
     fmu = kinds.add_parser(
         "fmu",
         help="a functional mock-up unit for co-simulation",
@@ -82,10 +76,6 @@ def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
     fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; default: 2")
     add_changes(fmu)
     fmu.set_defaults(run=_write_fmu, parser=fmu)
-
-
-def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
-    """Add the subcommand ``mjcf``."""
     mjcf = kinds.add_parser(
         "mjcf",
         help="a ski for MuJoCo",

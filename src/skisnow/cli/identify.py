@@ -80,24 +80,9 @@ def _add_methods(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Identify parameters, print and write them.
-
-    Returns exit status 0, 1 with too few points or without convergence, 130 or 143 after an interrupt.
-    """
+    """Identify parameters, print and write them; returns 0, 1 without a result, 130 or 143 after an interrupt."""
     if options.resume and options.out is None:
         options.parser.error("--resume continues the results in --out DIR; name it")
-    scenario_input = _prepare(options)
-    with ending_is_an_interrupt() as ending:
-        result = _identify(options)
-        with ending.finishing():
-            _write_and_print(options, result, scenario_input)
-    if ending.requested or ending.pressed or result.outcome == "interrupted":
-        return ending.status()
-    return 1 if result.outcome in ("too_few_points", "not_converged") else 0
-
-
-def _prepare(options: argparse.Namespace) -> ScenarioFile:
-    """Check the options and the output folder before the search; returns the scenario."""
     from ..identification.intervals import require_bootstrap, require_emcee
 
     require_bootstrap(options.bootstrap, options.bootstrap_by)
@@ -106,7 +91,13 @@ def _prepare(options: argparse.Namespace) -> ScenarioFile:
     scenario_input = scenario_of(options)
     prepare_output(options.out)
     print_warnings(scenario_input.warnings)
-    return scenario_input
+    with ending_is_an_interrupt() as ending:
+        result = _identify(options)
+        with ending.finishing():
+            _write_and_print(options, result, scenario_input)
+    if ending.requested or ending.pressed or result.outcome == "interrupted":
+        return ending.status()
+    return 1 if result.outcome in ("too_few_points", "not_converged") else 0
 
 
 def _identify(options: argparse.Namespace) -> Identification:

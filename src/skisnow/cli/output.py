@@ -30,10 +30,7 @@ def print_warnings(warnings: Iterable[object]) -> None:
 
 
 def prepare_output(folder: Path | None) -> None:
-    """Create a writable folder, and print notes on the removal of remains of killed processes; nothing if it is None.
-
-    Raises OutputError: the folder cannot be made or written.
-    """
+    """Make a folder that can be written, and print notes on removed remains of killed processes; nothing for None."""
     from .._support.staging import prepare_folder
 
     for sentence in prepare_folder(folder) if folder is not None else ():
@@ -41,10 +38,7 @@ def prepare_output(folder: Path | None) -> None:
 
 
 def prepare_figure(place: Path | None) -> None:
-    """Check before long work that a figure can be written to a path; nothing if it is None.
-
-    Raises ParameterError, OutputError: as `require_drawable`.
-    """
+    """Check before long work that a figure can be written to a path, as `require_drawable` does; nothing for None."""
     if place is not None:
         from ..report.figures.drawing import require_drawable
 
@@ -125,11 +119,7 @@ class Ended(KeyboardInterrupt):
 
 @dataclass(slots=True)
 class Ending:
-    """Record of requests to end this process, also after their exception was caught.
-
-    requested: True after a request of the system (SIGTERM).
-    pressed: True after Ctrl-C during `finishing`.
-    """
+    """Record of requests to end: `requested` by the system (SIGTERM), `pressed` by Ctrl-C during `finishing`."""
 
     requested: bool = False
     pressed: bool = False

@@ -25,7 +25,7 @@ from .output import (
 )
 
 if TYPE_CHECKING:
-    from ..racing import QuickestLine, RacingLine, Score, Worth
+    from ..racing import QuickestLine, Score, Worth
     from ..scenario import Scenario
     from ..simulation.run import Run
 
@@ -134,15 +134,23 @@ def _run_race(
     options: argparse.Namespace,
 ) -> tuple[QuickestLine, list[tuple[str, Score]], Run | None, tuple[Worth, ...]]:
     """Result of the search, scores and run by the scenario's method as in `_scores_by_method`, and variants' times."""
-    from ..racing import compare_variants, drawn_for_race, quickest_line
+    from ..racing import compare_variants, drawn_for_race, quickest_line, read_line, worth_changes
+    from ..racing.line import course_of
     from ..racing.search import require_cmaes
 
     if options.evaluations > 1:
         require_cmaes()
-    scenario, variants = _scenario_and_variants(options)
+    scenario_input = scenario_of(options)
+    print_warnings(scenario_input.warnings)
+    scenario = scenario_input.scenario
+    variants = {name: scenario.with_(ski=name) for name in options.against}
+    if options.worth:
+        variants |= worth_changes(scenario)
     snow = scenario.contact.snow
     snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
-    begin = _read_start_line(options, scenario)
+    begin = None
+    if options.line is not None:
+        begin = read_line(options.line, course_of(scenario), (scenario.start.x, scenario.start.y))
     prepare_output(options.out)
     computing: dict[str, Any] = {"workers": options.workers}
     with Progress() as progress:
@@ -162,28 +170,6 @@ def _run_race(
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
     return fastest, checked, run, worth
-
-
-def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
-    """Scenario of the command, and the variants to compare by name: other skis, and the usual changes."""
-    from ..racing import worth_changes
-
-    scenario_input = scenario_of(options)
-    print_warnings(scenario_input.warnings)
-    variants = {name: scenario_input.scenario.with_(ski=name) for name in options.against}
-    if options.worth:
-        variants |= worth_changes(scenario_input.scenario)
-    return scenario_input.scenario, variants
-
-
-def _read_start_line(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None:
-    """Racing line of --line, for the scenario's course and start; None without the option."""
-    from ..racing import read_line
-    from ..racing.line import course_of
-
-    if options.line is None:
-        return None
-    return read_line(options.line, course_of(scenario), (scenario.start.x, scenario.start.y))
 
 
 def _scores_by_method(

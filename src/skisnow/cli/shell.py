@@ -72,11 +72,7 @@ def print_completion(options: argparse.Namespace) -> int:
 
 
 def candidates(parser: argparse.ArgumentParser, words: Sequence[str], begun: str) -> list[str]:
-    """Words for the completion of a command line; [] if a file or a number comes next.
-
-    words: complete words before the cursor.
-    begun: word at the cursor; one that begins with - is an option.
-    """
+    """Words that can complete `begun` after other words, options if it begins with -; [] for a file or a number."""
     waiting: argparse.Action | None = None
     places = _positionals(parser)
     for word in words:
@@ -113,21 +109,16 @@ def _options(parser: argparse.ArgumentParser, words: Iterable[str]) -> list[str]
 
 
 def _values(action: argparse.Action) -> list[str]:
-    """Possible values of an option or an argument; [] if they cannot be listed."""
+    """Choices of an option or argument, or built-in skis, scenarios, snows or scenario keys; [] for others."""
     if action.choices is not None:
         return list(map(str, action.choices))
-    return _known_names(action.dest)
-
-
-def _known_names(stored_as: str) -> list[str]:
-    """Built-in skis, scenarios, snows or scenario keys for an argument stored under this name; [] for others."""
-    if stored_as == "ski":
+    if action.dest == "ski":
         from ..ski import ski_names as names
-    elif stored_as == "scenario":
+    elif action.dest == "scenario":
         from ..scenario import scenario_names as names
-    elif stored_as == "published":
+    elif action.dest == "published":
         from ..snow import published_names as names
-    elif stored_as == "changes":
+    elif action.dest == "changes":
         from ..scenario.keys import SCENARIO_KEYS
 
         return [f"{name}=" for name in SCENARIO_KEYS]
@@ -221,7 +212,7 @@ def print_schema(options: argparse.Namespace) -> int:
 
 def json_schema(name: str) -> Schema:
     """JSON Schema of an input or output of skisnow by its name, one of `NAMES`."""
-    from .._support.user_files import read_json
+    from .._support.user_files.json_text import read_json
     from ..campaign.reading.campaign_file import campaign_schema
     from ..carving.question import CARVE_KEYS
     from ..parameters.json_schema import output_schema

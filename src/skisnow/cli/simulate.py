@@ -14,10 +14,9 @@ from .options import add_changes, add_language, add_workers, changes_of, number,
 from .output import Progress, ending_is_an_interrupt, prepare_output, print_json, print_warnings
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable
 
     from ..scenario import Scenario, ScenarioFile
-    from ..scenario.contact import Contact
     from ..simulation.run import Run
     from ..simulation.verification import Refinement
 
@@ -58,16 +57,6 @@ def simulate_scenario(options: argparse.Namespace) -> int:
     if options.replay and options.out is None:
         options.parser.error("--replay writes into the folder of --out: name one")
     scenario_input = scenario_of(options)
-    _prepare(options, scenario_input)
-    with ending_is_an_interrupt() as ending:
-        result, refinements = _simulate(scenario_input, verify=options.verify)
-        with ending.finishing():
-            _write_and_print(options, scenario_input, result, refinements)
-    return ending.status() if ending.requested or ending.pressed or result.outcome == "interrupted" else 0
-
-
-def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
-    """Reject wrong options, prepare the output folder and print warnings before the simulation."""
     if options.boots_out is not None:
         from .._support.staging import require_ending
         from ..simulation.run_tables import ENDINGS
@@ -75,31 +64,29 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
         require_ending(options.boots_out, *ENDINGS)
     prepare_output(options.out)
     print_warnings(scenario_input.warnings)
+    with ending_is_an_interrupt() as ending:
+        result, refinements = _simulate(scenario_input, verify=options.verify)
+        with ending.finishing():
+            _write_and_print(options, scenario_input, result, refinements)
+    return ending.status() if ending.requested or ending.pressed or result.outcome == "interrupted" else 0
 
 
 def _simulate(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
     """Run of a scenario, and its refinements if `verify`; None without them or if the run was interrupted."""
+    from ..simulation import verification
     from ..simulation.simulated_run import simulate
 
     with Progress() as progress, warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
-        result = simulate(scenario_input.scenario, progress=_Pace(progress))
+        result = simulate(scenario_input.scenario, progress=_show_pace(progress))
         if not verify or result.outcome == "interrupted":
             return result, None
-        return result, _verify(result, progress)
+        keys = iter(verification.repetitions(result))
 
+        def finer(scenario: Scenario) -> Run:
+            return simulate(scenario, progress=_show_pace(progress, f"again, {next(keys)}: "))
 
-def _verify(result: Run, progress: Progress) -> tuple[Refinement, ...]:
-    """Refinements of a run: repetitions with finer settings, each with its progress."""
-    from ..simulation.simulated_run import simulate
-    from ..simulation.verification import repetitions, verify
-
-    keys = iter(repetitions(result))
-
-    def finer(scenario: Scenario) -> Run:
-        return simulate(scenario, progress=_Pace(progress, f"again, {next(keys)}: "))
-
-    return verify(result, finer)
+        return result, verification.verify(result, finer)
 
 
 def _write_and_print(
@@ -170,23 +157,17 @@ def _write_run(options: argparse.Namespace, result: Run, summary: dict[str, Any]
         print(f"Replay: {folder / REPLAY}", file=sys.stderr)
 
 
-class _Pace:
-    """Progress callback of a simulation that prints simulated time, share, and the speed relative to real time."""
+def _show_pace(progress: Progress, prefix: str = "") -> Callable[[float, float], None]:
+    """Callback of a simulation that prints simulated time (s), share, and the speed relative to real time."""
+    begun: list[float] = []
 
-    def __init__(self, progress: Progress, prefix: str = "") -> None:
-        self._progress = progress
-        self._prefix = prefix
-        self._begun: tuple[float, float] | None = None
-
-    def __call__(self, simulated_s: float, share: float) -> None:
+    def show(simulated_s: float, share: float) -> None:
         time_s = time.monotonic()
-        if self._begun is None:
-            self._begun = (time_s, simulated_s)
-        start, before = self._begun
-        rate = (simulated_s - before) / max(time_s - start, 1e-9)
-        self._progress(
-            f"{self._prefix}{simulated_s:.2f} s simulated, {100.0 * share:.0f} %, {rate:.3g} times real time"
-        )
+        begun[:] = begun or [time_s, simulated_s]
+        rate = (simulated_s - begun[1]) / max(time_s - begun[0], 1e-9)
+        progress(f"{prefix}{simulated_s:.2f} s simulated, {100.0 * share:.0f} %, {rate:.3g} times real time")
+
+    return show
 
 
 MOST_RUNS = 10_000
@@ -254,7 +235,12 @@ def simulate_turn(options: argparse.Namespace) -> int:
     print_warnings(scenario_input.warnings)
     prepare_output(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
-    numbers = _contact_changes(changes_of(options), scenario_input.scenario.contact)
+    contact, changes = scenario_input.scenario.contact, changes_of(options)
+    numbers: dict[str, Any] = {}  # which override the values of the campaign
+    if "snow.unloading_ratio" in changes:
+        numbers["unloading_ratio"] = contact.unloading_ratio
+    if "snow.shear_displacement_mm" in changes:
+        numbers["shear_displacement"] = contact.shear_displacement
     chosen = numbers | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
         chain = turn(
@@ -271,12 +257,3 @@ def simulate_turn(options: argparse.Namespace) -> int:
     if page is not None:
         print(f"The whole chain: {page}", file=sys.stderr)
     return 0
-
-
-def _contact_changes(changes: Mapping[str, object], contact: Contact) -> dict[str, Any]:
-    """k_u/H_V and u_y among the changes, which override the values of the campaign."""
-    values = {
-        "snow.unloading_ratio": ("unloading_ratio", contact.unloading_ratio),
-        "snow.shear_displacement_mm": ("shear_displacement", contact.shear_displacement),
-    }
-    return {name: value for key, (name, value) in values.items() if key in changes}

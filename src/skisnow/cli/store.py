@@ -131,12 +131,18 @@ def _show(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export(store: Store, args: argparse.Namespace) -> Answer:
-    """Export a campaign, with its corrections unless --as-added; JSON, text and exit status."""
-    from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
+    """Export a campaign with its corrections; with --as-added without them. JSON, text and exit status."""
+    from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, export_entered, find_campaign
 
     campaign = find_campaign(store, args.id)
     if isinstance(campaign, JournalHead):
-        return _export_entered(store, campaign, args)
+        if args.as_added:
+            raise StoreError("The campaign {id} consists of lab entries and has no stored files. Omit --as-added.").tag(
+                "no_data", id=campaign.id
+            )
+        export_entered(store, campaign.id, args.out)
+        text = f"{_entered_line(campaign)}, written to {args.out}"
+        return {**asdict(campaign), "out": str(args.out)}, text, 0
     with _percent_printed("exporting") as progress:
         if args.as_added:
             exported = ExportedCampaign(store.export(args.id, args.out, progress=progress), 0)
@@ -146,18 +152,6 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
     text = f"{stored.id}  {stored.name}: {_size_text(stored.n_files, stored.n_bytes)}, exported to {args.out}"
     text += f"\ncells corrected since, in corrections.csv: {n}" if n else ""
     return {**_as_json(stored), "n_corrections": n, "out": str(args.out)}, text, 0
-
-
-def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -> Answer:
-    """Export a campaign in entry; rejects --as-added. JSON, text and exit status."""
-    from ..campaign.store import export_entered
-
-    if args.as_added:
-        raise StoreError("The campaign {id} consists of lab entries and has no stored files. Omit --as-added.").tag(
-            "no_data", id=head.id
-        )
-    export_entered(store, head.id, args.out)
-    return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
 
 
 def _verify(store: Store, _: argparse.Namespace) -> Answer:

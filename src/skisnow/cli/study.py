@@ -71,7 +71,12 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
     if _all_points_failed(study.out, table):
         return 1
     if options.figure is not None:
-        _draw_figure(options, table)
+        from ..report.figures.drawing import write_figure
+        from ..report.study_maps import grip_map, radius_map
+
+        draw = {"radius": radius_map, "grip": grip_map}[options.map]
+        write_figure(options.figure, lambda: draw(table), language=options.language)
+        print(f"Figure: {options.figure}", file=sys.stderr)
     return 0
 
 
@@ -109,7 +114,7 @@ def _merge_shards(options: argparse.Namespace) -> int:
 
 def _all_points_failed(place: Path, table: StudyTable) -> bool:
     """True, after a message on standard error, if every point of a table failed."""
-    if table.tally().failed < len(table.rows):
+    if table.answers():
         return False
     print(f"skisnow: not one point could be asked; {place} was not written.", file=sys.stderr)
     return True
@@ -129,24 +134,15 @@ def _print_state(study: Study) -> None:
 
 def _print_outcomes(place: Path, table: StudyTable) -> None:
     """Print the counts of outcomes, and the first failed and first warned point on standard error."""
-    tally = table.tally()
-    counts = ", ".join(f"{outcome} {count}" for outcome, count in tally.counts().items())
-    print(f"{place}: points {tally.rows} ({counts})")
-    for number, first, what in (
-        (tally.failed, tally.first_failed, "have an input that is not allowed"),
-        (tally.warned, tally.first_warned, "carry warnings"),
-    ):
-        if first is not None:
-            row, text = first
-            count = "1 point" if number == 1 else f"{number} points"
+    from ..studies.table import FAILED
+
+    counts = ", ".join(f"{outcome} {count}" for outcome, count in table.counts().items())
+    print(f"{place}: points {len(table.rows)} ({counts})")
+    rows = list(enumerate(table.rows, start=1))
+    failed = [(number, row.get("reason")) for number, row in rows if row["outcome"] == FAILED]
+    warned = [(number, row["warnings"]) for number, row in rows if row.get("warnings")]
+    for points, what in ((failed, "have an input that is not allowed"), (warned, "carry warnings")):
+        if points:
+            row, text = points[0]
+            count = "1 point" if len(points) == 1 else f"{len(points)} points"
             print(f"warning: {count} {what}; the first, row {row}: {text}", file=sys.stderr)
-
-
-def _draw_figure(options: argparse.Namespace, table: StudyTable) -> None:
-    """Draw the map of a study into a file and print its path on standard error."""
-    from ..report.figures.drawing import write_figure
-    from ..report.study_maps import grip_map, radius_map
-
-    draw = {"radius": radius_map, "grip": grip_map}[options.map]
-    write_figure(options.figure, lambda: draw(table), language=options.language)
-    print(f"Figure: {options.figure}", file=sys.stderr)

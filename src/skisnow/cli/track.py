@@ -14,9 +14,7 @@ from .output import Progress, prepare_output, print_json, print_warnings
 if TYPE_CHECKING:
     from .._support.messages import Message
     from ..comparison import Comparison
-    from ..track.course import Course
     from ..track.course.gates_table import GateGap
-    from ..track.projection import GeodeticPoint
     from ..track.track import Track
 
     Gaps: TypeAlias = tuple[GateGap, ...] | None
@@ -60,10 +58,14 @@ def summarise(options: argparse.Namespace) -> int:
     """Read a track, print its summary, and write its report if a folder is given."""
     prepare_output(options.out)
     from ..track.course import read_course
+    from ..track.projection import GeodeticPoint
     from ..track.read import read_track
 
     course = None if options.course is None else read_course(options.course)
-    track = read_track(options.file, origin=None if course is None else _course_origin(course))
+    origin = None
+    if course is not None and course.latitude_deg is not None and course.longitude_deg is not None:
+        origin = GeodeticPoint(course.latitude_deg, course.longitude_deg)
+    track = read_track(options.file, origin=origin)
     from ..simulation.run_summary import time_gates
     from ..track.summary import summary_dict, track_summary
 
@@ -95,15 +97,6 @@ def summarise(options: argparse.Namespace) -> int:
             )
         print(f"Figures: {written.parent / 'figures'}", file=sys.stderr)
     return 0
-
-
-def _course_origin(course: Course) -> GeodeticPoint | None:
-    """Origin of the projection for the track and a course in degrees; None for a course in metres."""
-    from ..track.projection import GeodeticPoint
-
-    if course.latitude_deg is None or course.longitude_deg is None:
-        return None
-    return GeodeticPoint(course.latitude_deg, course.longitude_deg)
 
 
 def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -107,7 +107,13 @@ def compare_tracks(
     ----------
     The page docs/methods/tracks.md.
     """
-    _require_options(fit, time_from, known_to, slope_angle)
+    require_offsets(fit)
+    if time_from not in (None, *get_args(TimeFrom)):
+        raise ParameterError("time is counted from first_point or clock, not from {time_from!r}").tag(
+            "unknown_time_origin", time_from=time_from
+        )
+    require_range("known_to", known_to or 0.0, 0.0, math.inf, below=True)
+    require_range("slope_angle", slope_angle or 0.0, 0.0, STEEPEST)
     if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:
         simulated = simulated.at_origin(measured.origin)
     placed, together = set(fit) >= _PLACED, (simulated.axes == "east_north_up") == (measured.axes == "east_north_up")
@@ -122,7 +128,13 @@ def compare_tracks(
     plain = _compare_lines(lines, clock, names, seen)
     if fit:
         plain = _fit_and_compare(plain, set(fit), clock)
-    _require_near(plain.simulated, plain.measured, names)
+    places = plain.measured.at_arc_length(np.linspace(0.0, plain.measured.length, 1001))
+    nearest = float(Path(plain.simulated.place).nearest(places).distance.min())
+    if nearest > FARTHEST:
+        raise ParameterError(
+            "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
+            "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading"
+        ).tag("nothing_common", first=names[0], second=names[1], nearest=nearest / 1000.0, farthest=FARTHEST / 1000.0)
     fitted = plain.fitted
     if placed and fitted is not None:
         turned = fitted.turned if measured.axes == "east_north_up" else -fitted.turned
@@ -139,19 +151,6 @@ def compare_tracks(
         in_one_frame=together or placed,
         known_to=max(map(place_accuracy, (simulated, measured))) if known_to is None else known_to,
     )
-
-
-def _require_options(
-    fit: Collection[str], time_from: str | None, known_to: float | None, slope_angle: float | None
-) -> None:
-    """Reject unknown offsets or time origin, a negative `known_to` (m), and a slope angle (rad) out of range."""
-    require_offsets(fit)
-    if time_from not in (None, *get_args(TimeFrom)):
-        raise ParameterError("time is counted from first_point or clock, not from {time_from!r}").tag(
-            "unknown_time_origin", time_from=time_from
-        )
-    require_range("known_to", known_to or 0.0, 0.0, math.inf, below=True)
-    require_range("slope_angle", slope_angle or 0.0, 0.0, STEEPEST)
 
 
 def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
@@ -230,17 +229,6 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
         turned_error=motion.turned_error,
     )
     return replace(moved_comparison, fitted=fitted)
-
-
-def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str]) -> None:
-    """Reject tracks that are nowhere within `FARTHEST` of each other."""
-    places = measured.at_arc_length(np.linspace(0.0, measured.length, 1001))
-    nearest = float(Path(simulated.place).nearest(places).distance.min())
-    if nearest > FARTHEST:
-        raise ParameterError(
-            "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
-            "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading"
-        ).tag("nothing_common", first=names[0], second=names[1], nearest=nearest / 1000.0, farthest=FARTHEST / 1000.0)
 
 
 def _track_warnings(track: Track, dimensions: int) -> Iterator[str]:

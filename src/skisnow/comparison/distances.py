@@ -85,15 +85,11 @@ def mean_lengths(first: FloatArray, last: FloatArray) -> FloatArray:
     between = first[:, None, :] + _GAUSS_AT[:, None] * change[:, None, :]
     mean = np.linalg.norm(between, axis=2) @ _GAUSS_WEIGHT
     rough = size > _SMOOTH * longest
-    mean[rough] = _closed_form(first[rough], change[rough] / size[rough, None], size[rough])
+    direction = change[rough] / size[rough, None]
+    begins = (first[rough] * direction).sum(axis=1)
+    across = np.linalg.norm(first[rough] - begins[:, None] * direction, axis=1)
+    mean[rough] = (_area(begins + size[rough], across) - _area(begins, across)) / size[rough]
     return mean
-
-
-def _closed_form(first: FloatArray, direction: FloatArray, size: FloatArray) -> FloatArray:
-    """Mean length of vectors (n, d) that change by `size` (n,) along the unit vectors `direction`."""
-    begins = (first * direction).sum(axis=1)
-    across = np.linalg.norm(first - begins[:, None] * direction, axis=1)
-    return (_area(begins + size, across) - _area(begins, across)) / size
 
 
 def _area(x: FloatArray, h: FloatArray) -> FloatArray:
@@ -146,10 +142,7 @@ def nearest_offsets(simulated: Path, measured: Polyline) -> OffsetSeries:
 
 
 def arc_length_offsets(simulated: Polyline, measured: Polyline) -> OffsetSeries:
-    """Offsets between places after the same arc length from the first points, up to the shorter track's length.
-
-    They are computed at the points of both tracks, between which they change linearly.
-    """
+    """Offsets at the points of both tracks between places after equal arc length, up to the end of the shorter."""
     end = min(simulated.length, measured.length)
     arc_length = np.unique(np.concatenate([simulated.arc_length, measured.arc_length, [end]]))
     arc_length = arc_length[arc_length <= end]

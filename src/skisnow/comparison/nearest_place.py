@@ -23,9 +23,7 @@ at most 5 parts in 100 000.
 _LONGEST: Final = 2.0
 """Longest piece between two nodes, in mean lengths of the pieces."""
 _FIRST_NEIGHBOURS: Final = 4
-_CHUNK: Final = 1 << 15
-"""Number of points in one query."""
-_MOST_NUMBERS: Final = 1 << 20
+_MOST_NUMBERS: Final = 1 << 17
 """Maximum number of neighbours in one query."""
 _ROUNDING: Final = 1e-12
 """Relative error of squared distances."""
@@ -91,7 +89,8 @@ class Path:
 
     def nearest(self, points: FloatArray) -> NearestPlaces:
         """Nearest places on the pieces for points (n, d)."""
-        piece = self._nearest_pieces(points)
+        piece = np.empty(len(points), dtype=np.intp)
+        self._search(points, np.arange(len(points)), _FIRST_NEIGHBOURS, piece)
         start, along = self._start[piece], self._along[piece]
         raw = ((points - start) * along).sum(axis=1) / self._squared[piece]
         share = np.clip(raw, 0.0, 1.0)
@@ -108,26 +107,23 @@ class Path:
             beyond=ahead > np.maximum(BESIDE_END * distance, 1e-9 * self.length),
         )
 
-    def _nearest_pieces(self, points: FloatArray) -> IntArray:
-        """Number (n,) of the piece nearest to each point (n, d); the first of several equally near ones."""
-        nearest = np.empty(len(points), dtype=np.intp)
-        for first in range(0, len(points), _CHUNK):
-            self._search(points, np.arange(first, min(first + _CHUNK, len(points))), _FIRST_NEIGHBOURS, nearest)
-        return nearest
-
     def _search(self, points: FloatArray, numbers: IntArray, neighbours: int, nearest: IntArray) -> None:
-        """Write the nearest piece of each point in `numbers` into `nearest`; searches `neighbours` or more nodes."""
+        """Write the piece nearest to each point in `numbers`, the first of equally near ones, into `nearest`.
+
+        neighbours: number of nodes that are searched first; it is doubled for points that need more.
+        """
         count = min(neighbours, self._tree.n)
-        distance, node = (np.reshape(result, (-1, count)) for result in self._tree.query(points[numbers], k=count))
-        piece = np.concatenate([self._before[node], self._after[node]], axis=1)
-        square = self._squares(points[numbers], piece)
-        least = square.min(axis=1)
-        nearest[numbers] = np.where(square == least[:, None], piece, len(self._squared)).min(axis=1)
-        unsure = distance[:, -1] ** 2 <= (1.0 + _ROUNDING) * (least + self._slack)
-        if count < self._tree.n and unsure.any():
-            rest, size = numbers[unsure], max(1, _MOST_NUMBERS // (2 * count))
-            for begin in range(0, len(rest), size):
-                self._search(points, rest[begin : begin + size], 2 * count, nearest)
+        size = max(1, _MOST_NUMBERS // count)
+        for begin in range(0, len(numbers), size):
+            chunk = numbers[begin : begin + size]
+            distance, node = (np.reshape(result, (-1, count)) for result in self._tree.query(points[chunk], k=count))
+            piece = np.concatenate([self._before[node], self._after[node]], axis=1)
+            square = self._squares(points[chunk], piece)
+            least = square.min(axis=1)
+            nearest[chunk] = np.where(square == least[:, None], piece, len(self._squared)).min(axis=1)
+            unsure = distance[:, -1] ** 2 <= (1.0 + _ROUNDING) * (least + self._slack)
+            if count < self._tree.n and unsure.any():
+                self._search(points, chunk[unsure], 2 * count, nearest)
 
     def _squares(self, points: FloatArray, piece: IntArray) -> FloatArray:
         """Squared distances (n, k) of points (n, d) from pieces (n, k)."""

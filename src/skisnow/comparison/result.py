@@ -178,23 +178,22 @@ def comparison_dict(comparison: Comparison) -> Json:
 
 
 def _distances_of_each_kind(comparison: Comparison) -> Json:
-    """JSON of the distances by each of the three definitions."""
-    return {kind: _distances_json(getattr(comparison, kind), comparison.measured.length) for kind in KINDS}
-
-
-def _distances_json(distances: Distances, length: float) -> Json:
-    """JSON of distances: maximum, mean and rms in m and as shares of the track's length (m)."""
-    numbers = {} if distances.numbers is None else asdict(distances.numbers)
-    metres = {name: numbers.get(name) for name in ("max", "mean", "rms")}
-    return {
-        **{f"{name}_m": value for name, value in metres.items()},
-        **{f"{name}_share": None if value is None else value / length for name, value in metres.items()},
-        "max_at_m": numbers.get("max_at"),
-        "compared_m": numbers.get("compared", 0.0),
-        "compared_share": numbers.get("compared", 0.0) / length,
-        "definition": distances.definition,
-        "reason": distances.reason,
-    }
+    """JSON of the distances by each definition: maximum, mean and rms in m and as shares of the track's length."""
+    length, answer = comparison.measured.length, dict[str, Json]()
+    for kind in KINDS:
+        distances = getattr(comparison, kind)
+        numbers = {} if distances.numbers is None else asdict(distances.numbers)
+        metres = {name: numbers.get(name) for name in ("max", "mean", "rms")}
+        answer[kind] = {
+            **{f"{name}_m": value for name, value in metres.items()},
+            **{f"{name}_share": None if value is None else value / length for name, value in metres.items()},
+            "max_at_m": numbers.get("max_at"),
+            "compared_m": numbers.get("compared", 0.0),
+            "compared_share": numbers.get("compared", 0.0) / length,
+            "definition": distances.definition,
+            "reason": distances.reason,
+        }
+    return answer
 
 
 def _fitted_dict(fitted: FittedOffsets) -> Json:
