@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -16,7 +17,7 @@ import numpy as np
 from skisnow._support.processes.batch import compute_missing
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.studies import read_study
-from skisnow.studies.run import StudyRows
+from skisnow.studies.run import point_values
 
 TASK_S: Final = 0.05
 WORKERS: Final = 2
@@ -75,7 +76,8 @@ def study_seconds(folder: Path, text: str, executor: str | None) -> float:
     study = read_study(path)
     warm, rows = Warm(), KeptRows()
     workers = 1 if executor is None else WORKERS
-    compute_missing(study.points, StudyRows.of(study), rows, workers=workers, executor=executor, progress=warm)
+    values = partial(point_values, study.subject, study.columns[:-1])
+    compute_missing(study.points, values, rows, workers=workers, executor=executor, progress=warm)
     return warm.seconds_per_point(len(study.points))
 
 

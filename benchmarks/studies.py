@@ -12,14 +12,11 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from skisnow.carving.question import CARVE_KEYS
-from skisnow.parameters import Quantity
 from skisnow.studies import Study, read_study, run_study
 from skisnow.studies.points import Point
 from skisnow.studies.subjects import CARVE_RESULTS, CarveModel
@@ -36,28 +33,8 @@ edge_angle_deg = {{ from = 10, to = 60, n = {n} }}
 """
 
 
-@dataclass(frozen=True, slots=True)
-class Costless:
+class Costless(CarveModel):
     """Rows as long as those of carved turns, in no time."""
-
-    carve: CarveModel
-
-    @property
-    def keys(self) -> Mapping[str, Quantity]:
-        return CARVE_KEYS
-
-    @property
-    def results(self) -> tuple[str, ...]:
-        return CARVE_RESULTS
-
-    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        return self.carve.named(table)
-
-    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
-        self.carve.require_sound(points, fixed)
-
-    def files(self, points: Sequence[Point]) -> list[Path]:
-        return self.carve.files(points)
 
     def __call__(self, point: Point) -> dict[str, Any]:
         number = point["load_N"] / 3.0 + point["edge_angle_deg"] / 7.0
@@ -66,15 +43,10 @@ class Costless:
         return {**dict.fromkeys(CARVE_KEYS), **point, **results, **texts}
 
 
-def costless(folder: Path) -> Costless:
-    """Of a folder."""
-    return Costless(CarveModel(folder))
-
-
 def run(folder: Path, *, share: float) -> dict[str, float]:
     """A share of the study, or all of it with its table, in this process and two workers."""
     begin, spent = time.perf_counter(), time.process_time()
-    study: Study = read_study(folder / "study.toml", subject=costless)
+    study: Study = read_study(folder / "study.toml", subject=Costless)
     first: list[float] = []
 
     def tell(done: int, total: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -20,6 +20,7 @@ from skisnow.simulation.run import Run
 from skisnow.simulation.run_setup import laid_out
 from skisnow.simulation.simulated_run import simulate
 from skisnow.ski import Ski
+from skisnow.studies.subjects import StudyModel
 
 from .unknowns import UNKNOWNS
 
@@ -46,25 +47,15 @@ OF_A_PAIR: Final = ("outcome", "apart_m", "ends_apart_m", "parted_m", "outside_m
 
 
 @dataclass(frozen=True, slots=True)
-class Pairs:
+class Pairs(StudyModel):
     """A study's subject: pairs of runs of a published length; `fast`: quickly, with some centimetres of error."""
 
+    keys = {  # noqa: RUF012 - as in the base
+        "scenario": Quantity("scenario", "a built-in one, for its ski and its length", kind="text"),
+        **{each.name: each.key for each in UNKNOWNS},
+    }
+    results = (*OF_A_PAIR, *(f"{contact}_{name}" for contact in CONTACTS for name in OF_A_RUN))
     fast: bool = True
-
-    @property
-    def keys(self) -> Mapping[str, Quantity]:
-        """The scenario and what varies."""
-        scenario = Quantity("scenario", "a built-in one, for its ski and its length", kind="text")
-        return {"scenario": scenario, **{each.name: each.key for each in UNKNOWNS}}
-
-    @property
-    def results(self) -> tuple[str, ...]:
-        """The columns of results."""
-        return (*OF_A_PAIR, *(f"{contact}_{name}" for contact in CONTACTS for name in OF_A_RUN))
-
-    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """Names are full ones already."""
-        return dict(table)
 
     def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         """The design is sound."""

@@ -1,7 +1,6 @@
 """Studies: one question over a grid or a sample of its inputs, in parallel and resumable, as one table."""
 
-from .run import StudyState, run_study, study_state
-from .shards import Shard, merge_shards, run_shard
+from .run import Shard, StudyState, merge_shards, run_shard, run_study, study_state
 from .study import Study, read_study
 from .table import StudyTable, read_table
 

@@ -52,7 +52,9 @@ class Axis:
         """Parse the value of a key: one value, a list of values, or {from, to, n, log}."""
         if isinstance(value, dict):
             return cls._of_range(key, value)
-        values = value if isinstance(value, list) and not _is_one(key, value) else [value]
+        values = value if isinstance(value, list) else [value]
+        if key.kind == "three numbers" and not any(isinstance(item, list) for item in values):
+            values = [value]  # the list is one value
         if not values:
             raise ParameterError("{name} is an empty list; write at least one value").tag("out_of_range", name=key.name)
         checked = tuple(key.in_kind(value) for value in values)
@@ -142,8 +144,3 @@ def require_count(n: int) -> None:
         raise ParameterError("the study has {n} points; at most {most_points} are allowed. Use fewer values").tag(
             "out_of_range", n=n, most_points=MOST_POINTS
         )
-
-
-def _is_one(key: Quantity, value: list[Any]) -> bool:
-    """True if a list is one value: three numbers."""
-    return key.kind == "three numbers" and not any(isinstance(number, list) for number in value)

@@ -1,20 +1,31 @@
-"""Running a study: missing rows are computed, finished rows are stored, the complete table is written last."""
+"""Running a study, whole or in parts: missing rows are computed, finished rows are stored, the table is written last.
+
+Parts are for the job arrays of batch systems: each computes some points, then all are put together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import heapq
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import partial
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Final, Self
 
 from .._support.errors import OutputError, ParameterError
+from .._support.messages import template
 from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, worker_count
-from .._support.processes.kept_rows import KeptRows, json_text
+from .._support.processes.kept_rows import KeptRows, NumberedText, json_text
 from .._support.staging import cannot_write, write_file
+from .._support.user_files.json_text import own_json
+from ..compiled import core
 from ..parameters import Quantity
 from .points import Point
-from .study import Study, StudyModel, read_study
+from .study import Study, place_for_previous, read_study, require_csv
+from .subjects import StudyModel
 from .table import StudyTable, read_table
 
 
@@ -27,12 +38,7 @@ class StudyState(Enum):
 
 
 def study_state(study: Study) -> StudyState:
-    """State of the table of this study: complete, absent, or of another study.
-
-    Raises ParameterError: a file that is not a study's table has its name: it is not replaced.
-    """
-    if not study.out.exists():
-        return StudyState.NEW
+    """State of a study's table: complete, absent, or of another study; ParameterError if the file is no such table."""
     return table_state(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
 
 
@@ -48,8 +54,7 @@ def table_state(
         raise ParameterError("{problem}. It is not replaced: name another place in out, or move it away").tag(
             "wrong_kind", problem=error
         ) from error
-    tally = table.tally()
-    same = tally.rows == points and tally.studies == {fingerprint}
+    same = len(table.rows) == points and {row["study"] for row in table.rows} == {fingerprint}
     return (StudyState.FINISHED if same else StudyState.ANOTHER), table
 
 
@@ -114,7 +119,7 @@ def run_study(
             raise OutputError("{out} was just written by another run. Start again to see its table").tag(
                 "in_use", out=study.out
             )
-        rows = StudyRows.of(study)
+        rows = partial(point_values, study.subject, study.columns[:-1])
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
         previous = study.place_for_previous() if state is StudyState.ANOTHER else None
         study_table = write_rows(study.out, study.columns, finished_rows.rows(), fingerprint, previous=previous)
@@ -162,23 +167,160 @@ def _stamp(path: Path) -> tuple[int, int, int] | None:
     return status.st_ino, status.st_size, status.st_mtime_ns
 
 
+def point_values(subject: StudyModel, columns: Sequence[str], point: Point) -> list[Any]:
+    """Values of a point's row, computed by a model, in the order of the columns; None for missing values."""
+    row = subject(point)
+    return [row.get(name) for name in columns]
+
+
+MOST_SHARDS: Final = 10_000
+"""Of one study (more than a job array has)."""
+_SHARD: Final = re.compile(r"(\d{1,9})/(\d{1,9})")
+
+
 @dataclass(frozen=True, slots=True)
-class StudyRows:
-    """Function that computes the values of a table row from the inputs of a point.
+class Shard:
+    """Part `number` (1 or more) of the `count` parts of a study: every `count`-th point."""
 
-    subject: model that computes the values of a point.
-    columns: columns of the table without the fingerprint of the study.
-    """
-
-    subject: StudyModel
-    columns: tuple[str, ...]
+    number: int
+    count: int
 
     @classmethod
-    def of(cls, study: Study) -> Self:
-        """Rows of a study."""
-        return cls(study.subject, study.columns[:-1])
+    def of(cls, text: str) -> Self:
+        """Read ``"2/8"``, the second of eight parts; ParameterError if the text is not a shard."""
+        match = _SHARD.fullmatch(text)
+        shard = cls(int(match[1]), int(match[2])) if match else None
+        if shard is None or not 1 <= shard.number <= shard.count <= MOST_SHARDS:
+            raise ParameterError(
+                "shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of eight; n is "
+                "{most_shards} at most"
+            ).tag("out_of_range", text=text, most_shards=MOST_SHARDS)
+        return shard
 
-    def __call__(self, point: Point) -> list[Any]:
-        """Values in the order of the columns, None for missing values."""
-        row = self.subject(point)
-        return [row.get(name) for name in self.columns]
+    def points(self, count: int) -> range:
+        """Numbers of the shard's points among `count`: every n-th, so that all shards take about as long."""
+        return range(self.number - 1, count, self.count)
+
+    def place(self, study: Study) -> Path:
+        """Path of the file with the part's finished points, next to the table."""
+        return study.out.with_name(f"{study.out.name}.shard-{self.number}-of-{self.count}")
+
+
+def run_shard(
+    study: Study | str | Path,
+    shard: Shard | str,
+    *,
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Compute the points of one part of a study that are missing; several parts may be computed at once.
+
+    study: The study, or the path of its STUDY.toml.
+    shard: The part, such as "2/8".
+    workers, executor, progress: As of `skisnow.study`.
+    Returns: The file of the part, which `merge_shards` takes; it is continued when the part is started again.
+    Raises ParameterError: the file is of another study, or the shard is not valid.
+    Raises OutputError: the file cannot be written, or another run is writing it.
+
+    References
+    ----------
+    The page docs/how-to/study.md.
+    """
+    workers = worker_count(workers)
+    require_executor(executor)
+    shard = Shard.of(shard) if isinstance(shard, str) else shard
+    study = study if isinstance(study, Study) else read_study(study)
+    place = shard.place(study)
+    finished_rows = kept_rows(study, place, study.fingerprint(), core=core.SOURCE_HASH)
+    try:
+        numbers = shard.points(len(study.points))
+        rows = partial(point_values, study.subject, study.columns[:-1])
+        compute_missing(
+            study.points, rows, finished_rows, numbers=numbers, workers=workers, executor=executor, progress=progress
+        )
+    finally:
+        finished_rows.close()
+    return place
+
+
+def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
+    """Merge the parts of a study into one table, the same as without parts; the parts stay.
+
+    out: The table; ends in .csv. A table of another study in its place is moved aside.
+    parts: The files of `run_shard`, in any order.
+    Returns: A row for each point; not written if no point could be computed.
+    Raises ParameterError: the parts are of different studies or were computed by different cores, or points are
+        missing.
+    Raises OutputError: a part is still being computed, or the place cannot be written.
+
+    References
+    ----------
+    The page docs/how-to/study.md.
+    """
+    out = Path(out)
+    require_csv(out)
+    places = [Path(part) for part in parts]
+    if not places:
+        raise ParameterError("no part is named; name the files of all parts of the study").tag("unknown_name")
+    with ExitStack() as opened:
+        shard_rows = []
+        for place in dict.fromkeys(places):
+            shard_rows.append(KeptRows.read(place))
+            opened.callback(shard_rows[-1].close)
+        return _merge_parts(out, shard_rows)
+
+
+_OF_ANOTHER_STUDY: Final = template("{path} is a part of another study than {other}. Remove one of them")
+_OF_ANOTHER_CORE: Final = template(
+    "{path} is a part of this study, computed by another core than {other}. Remove one of them"
+)
+
+
+def _merge_parts(out: Path, parts: Sequence[KeptRows]) -> StudyTable:
+    """Table merged from the parts of one study; rejects parts of another study or version, and missing rows."""
+    about = [part.about() for part in parts]
+    for name, text in (("fingerprint", _OF_ANOTHER_STUDY), ("core", _OF_ANOTHER_CORE)):
+        for part, entries in zip(parts, about, strict=True):
+            if entries.get(name) != about[0].get(name):
+                raise ParameterError(text).tag("another_study", path=part.path, other=parts[0].path)
+    if not {"points", "columns"} <= about[0].keys():
+        raise ParameterError("{path} is not a part of a study. Name the files that --shard left").tag(
+            "unknown_name", path=parts[0].path
+        )
+    fingerprint, count = about[0]["fingerprint"], int(about[0]["points"])
+    _require_whole(parts, count)
+    keys = {name: Quantity(name, "", kind=kind) for name, kind in own_json(about[0]["kinds"]).items()}
+    state, table = table_state(out, keys, fingerprint, count)
+    if state is StudyState.FINISHED and table is not None:
+        return table
+    previous = place_for_previous(out) if state is StudyState.ANOTHER else None
+    columns = (*own_json(about[0]["columns"]), "study")
+    return write_rows(out, columns, _merged_rows(parts), fingerprint, previous=previous)
+
+
+def _merged_rows(parts: Sequence[KeptRows]) -> Iterator[tuple[int, Any]]:
+    """Points with the values of their rows, in rising order, each once."""
+    last: NumberedText | None = None
+    for text in heapq.merge(*(part.texts() for part in parts)):
+        if last is None or text[0] != last[0]:
+            yield text[0], own_json(text[1])
+        elif text[1] != last[1]:
+            raise ParameterError("two parts have different rows for point {each}. Compute one of them again").tag(
+                "contradiction", each=text[0] + 1
+            )
+        last = text
+
+
+def _require_whole(parts: Sequence[KeptRows], count: int) -> None:
+    """Reject parts that lack one of the `count` points."""
+    is_there = bytearray(count)
+    for part in parts:
+        for number in part.numbers():
+            if 0 <= number < count:  # all others are rejected with their row
+                is_there[number] = True
+    if missing := is_there.count(0):
+        raise ParameterError(
+            "{missing} of {count} points are in none of the parts, the first is point {first}. Compute or name the "
+            "missing parts"
+        ).tag("missing", missing=missing, count=count, first=is_there.index(0) + 1)

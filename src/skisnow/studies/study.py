@@ -7,54 +7,22 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any, Final, Protocol, TypeAlias
+from typing import Annotated, Any, Final, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.processes.kept_rows import Row
 from .._support.units import Facts, Shown
-from .._support.user_files import is_file, read_toml
+from .._support.user_files.text_files import is_file, read_toml
 from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
 from .points import Axis, Point, grid_points, hypercube_points
-from .subjects import CarveModel, ScenarioModel
+from .subjects import CarveModel, ScenarioModel, StudyModel
 
 FORMS: Final = ("grid", "latin_hypercube")
 OWN_KEYS: Final[Mapping[str, tuple[str, ...]]] = {"grid": (), "latin_hypercube": ("n", "seed")}
 """Keys of each form that are not inputs."""
 TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
 
-
-class StudyModel(Protocol):
-    """Interface of a model whose points a study computes; pickled for each worker."""
-
-    @property
-    def keys(self) -> Mapping[str, Quantity]:
-        """The inputs by name, in the order of the table's columns."""
-        ...
-
-    @property
-    def results(self) -> tuple[str, ...]:
-        """Names of the columns of results."""
-        ...
-
-    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """Values of a table of the study file under the names of `keys`; unknown names are kept."""
-        ...
-
-    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
-        """Raise an error if the study cannot run: an input is missing, given twice, or names an unreadable file."""
-        ...
-
-    def files(self, points: Sequence[Point]) -> list[Path]:
-        """Files that the points name; a change of one of them makes another study."""
-        ...
-
-    def __call__(self, point: Point) -> Row:
-        """Inputs and results of one point; never raises for a bad point."""
-        ...
-
-
 ModelReader: TypeAlias = Callable[[Path], StudyModel]
-"""Makes a subject whose relative paths start at a folder."""
+"""Function that makes a model whose relative paths start at a folder."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -180,7 +148,12 @@ def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
                 "unknown_name", key=key, allowed=suggest_and_list(key, TOP_KEYS)
             )
     subject_ = _make_model(path, values, subject)
-    form = _grid_or_latin_hypercube(values)
+    forms = [form for form in FORMS if form in values]
+    if len(forms) != 1:
+        raise ParameterError("a study has either [grid] or [latin_hypercube]; {count} of them are there").tag(
+            "contradiction", count=len(forms)
+        )
+    form = forms[0]
     fixed = _read_fixed(subject_.named(_read_section(values, "fixed")), subject_.keys)
     varying = _read_section(values, form)
     inputs = subject_.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
@@ -209,16 +182,6 @@ def _make_model(path: Path, values: Mapping[str, Any], subject: ModelReader) -> 
             "wrong_kind", word=word
         )
     return ScenarioModel(path.parent, word)
-
-
-def _grid_or_latin_hypercube(values: Mapping[str, Any]) -> str:
-    """The one section of a study that varies inputs; rejects both and neither."""
-    forms = [form for form in FORMS if form in values]
-    if len(forms) != 1:
-        raise ParameterError("a study has either [grid] or [latin_hypercube]; {count} of them are there").tag(
-            "contradiction", count=len(forms)
-        )
-    return forms[0]
 
 
 def _read_section(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:

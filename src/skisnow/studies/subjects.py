@@ -20,7 +20,6 @@ from ..scenario import ScenarioFile
 from ..scenario.keys import PATH_KEYS, SCENARIO_KEYS, SECTIONS, full_name
 from ..scenario.reading import build_input, input_files, load_input, scenario_names, scenario_place
 from ..scenario.resolution import ScenarioInput
-from ..simulation.run import Run
 from ..simulation.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
 from ..ski.beam import CLAMP_LENGTH
 from ..ski.ski_file import Sources
@@ -52,15 +51,31 @@ def _distinct_values(points: Sequence[Point], name: str) -> list[Any]:
     return list(dict.fromkeys(point[name] for point in points if name in point))
 
 
-class _PointModel(ShownFields):
-    """Base of models of a point; if a point fails, its row has the outcome "error" and the reason."""
+class StudyModel(ShownFields):
+    """Base of the models whose points a study computes; pickled for each worker.
+
+    keys: inputs by name, in the order of the table's columns.
+    results: names of the columns of results.
+    """
 
     __slots__ = ()
     keys: ClassVar[Mapping[str, Quantity]]
     results: ClassVar[tuple[str, ...]]
 
+    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
+        """Values of a table of the study file under the names of `keys`; unknown names are kept."""
+        return dict(table)
+
+    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
+        """Raise an error if the study cannot run: an input is missing, given twice, or names an unreadable file."""
+        raise NotImplementedError
+
+    def files(self, points: Sequence[Point]) -> list[Path]:
+        """Files that the points name; a change of one of them makes another study."""
+        raise NotImplementedError
+
     def __call__(self, point: Point) -> Row:
-        """One row; whatever is wrong with a point is in it."""
+        """Row of a point; if the point fails, the outcome is "error" and the reason is in the row."""
         try:
             return self._compute_row(point)
         except SkisnowError as error:
@@ -80,7 +95,7 @@ class _PointModel(ShownFields):
 
 
 @dataclass(slots=True, repr=False)
-class CarveModel(_PointModel):
+class CarveModel(StudyModel):
     """Computes the carve of each point of a study, one row each. Relative paths start at `folder`."""
 
     keys = CARVE_KEYS
@@ -90,10 +105,6 @@ class CarveModel(_PointModel):
 
     def __post_init__(self) -> None:
         self._sources = Sources(self.folder)
-
-    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
-        """Values of a table of the study file, unchanged, because they have the names of the inputs."""
-        return dict(table)
 
     def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         """Raise an error if an input is missing, the snow is named twice, or a fixed ski or snow cannot be read."""
@@ -135,12 +146,8 @@ class CarveModel(_PointModel):
 
 
 @dataclass(slots=True, repr=False)
-class ScenarioModel(_PointModel):
-    """Runs a scenario with the values of each point. Relative paths start at `folder`.
-
-    folder: name of the study's file.
-    scenario: a built-in name, or the path of a file.
-    """
+class ScenarioModel(StudyModel):
+    """Runs a scenario, a built-in one or a file with a path relative to `folder`, with the values of each point."""
 
     keys = SCENARIO_KEYS
     results = RUN_RESULTS
@@ -193,7 +200,27 @@ class ScenarioModel(_PointModel):
         run = simulate(scenario_file.scenario)
         if run.outcome == "interrupted":  # half a run does not count: the study is what was interrupted
             raise KeyboardInterrupt
-        return _run_row(scenario_file, run)
+        finite = run.speed[np.isfinite(run.speed)]
+        depth = run.skis.edge_depth[np.isfinite(run.skis.edge_depth)]
+        energies = {name: value for name, value in energies_dict(run).items() if name in RUN_RESULTS}
+        return {
+            **scenario_file.values,
+            "outcome": run.outcome,
+            "run_length_m": json_number(run.run_length),
+            **{f"end_{name}": value for name, value in end_dict(run).items() if name != "time_s"},
+            "simulated_s": json_number(run.simulated_s),
+            "greatest_speed_m_per_s": float(finite.max()) if finite.size else None,
+            "least_turn_radius_m": least_turn_radius(run),
+            **radii_dict(run),
+            "greatest_edge_depth_mm": float(depth.max()) / MM if depth.size else None,
+            **energies,
+            "energy_balance_error": json_number(run.energy_balance_error),
+            "steps": int(run.steps),
+            "rejected_steps": int(run.rejected_steps),
+            "ski_name": run.scenario.ski.name,
+            "warnings": "; ".join((*scenario_file.warnings, *run_warnings(run))),
+            "reason": run.remedy,
+        }
 
     def _scenario_of_point(self, point: Point) -> ScenarioFile:
         """Scenario with the values of a point."""
@@ -202,28 +229,3 @@ class ScenarioModel(_PointModel):
     def _defaults(self) -> dict[str, Any]:
         """Values of the inputs that a point does not have: the scenario's own, otherwise the key's default."""
         return {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()}
-
-
-def _run_row(scenario: ScenarioFile, run: Run) -> Row:
-    """Values of a table row from a run: the scenario, outcome, end, extremes and energies."""
-    finite = run.speed[np.isfinite(run.speed)]
-    depth = run.skis.edge_depth[np.isfinite(run.skis.edge_depth)]
-    energies = {name: value for name, value in energies_dict(run).items() if name in RUN_RESULTS}
-    return {
-        **scenario.values,
-        "outcome": run.outcome,
-        "run_length_m": json_number(run.run_length),
-        **{f"end_{name}": value for name, value in end_dict(run).items() if name != "time_s"},
-        "simulated_s": json_number(run.simulated_s),
-        "greatest_speed_m_per_s": float(finite.max()) if finite.size else None,
-        "least_turn_radius_m": least_turn_radius(run),
-        **radii_dict(run),
-        "greatest_edge_depth_mm": float(depth.max()) / MM if depth.size else None,
-        **energies,
-        "energy_balance_error": json_number(run.energy_balance_error),
-        "steps": int(run.steps),
-        "rejected_steps": int(run.rejected_steps),
-        "ski_name": run.scenario.ski.name,
-        "warnings": "; ".join((*scenario.warnings, *run_warnings(run))),
-        "reason": run.remedy,
-    }

@@ -1,14 +1,15 @@
-"""The table of a study, one row for each point, as CSV; counts of outcomes."""
+"""The table of a study, one row for each point, as CSV: its cells from value to text and back."""
 
 from __future__ import annotations
 
 import csv
 import io
+import json
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.processes.kept_rows import Row
@@ -20,11 +21,13 @@ from .._support.spreadsheet_text import (
     decoded,
     most_frequent_separator,
     named_separator,
+    protect_from_formulas,
+    remove_protection,
 )
 from .._support.units import Facts, Shown
-from .._support.user_files import plain_bytes
+from .._support.user_files.json_text import json_value
+from .._support.user_files.text_files import plain_bytes
 from ..parameters import Quantity
-from .cells import cell, read_cells, readers
 
 _MOST_BYTES: Final = 1 << 28
 FAILED = "error"
@@ -69,11 +72,8 @@ class StudyTable(Shown):
 
     def counts(self) -> dict[str, int]:
         """Number of rows with each outcome, the most frequent first."""
-        return self.tally().counts()
-
-    def tally(self) -> Tally:
-        """Counts of outcomes, warnings and errors over the rows."""
-        return Tally.of(self.rows)
+        counts = Counter(str(row["outcome"]) for row in self.rows)
+        return dict(sorted(counts.items(), key=lambda pair: (-pair[1], pair)))
 
 
 def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequence[str] = ()) -> StudyTable:
@@ -96,23 +96,14 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
         columns = tuple(next(reader, ()))
         _require_columns(path, columns)
         lines = [(reader.line_num + skipped, cells) for cells in reader if cells]
-    except OSError as error:
-        raise _table_error(path, error.strerror or error) from error
     except (NoTextError, csv.Error) as error:
         raise ParameterError("{path} is not a table of a study: {error}").tag(
             "unknown_name", path=path, error=error
         ) from error
     mark = "." if separator == "," else decimal_mark([[cell for _, cells in lines for cell in cells]], separator=";")
-    cell_readers = readers(columns, keys, mark)
+    cell_readers = [_cell_reader(name, keys, mark) for name in columns]
     values = (read_cells(f"{path}, line {line}", columns, cells, cell_readers) for line, cells in lines)
     return StudyTable(columns, [dict(zip(columns, row, strict=True)) for row in values], tuple(varied))
-
-
-def _table_error(path: Path, why: object) -> ParameterError:
-    """Error for a table of a study that cannot be read."""
-    return ParameterError(
-        "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again"
-    ).tag("cannot_read", path=path, reason=why)
 
 
 def _require_columns(path: Path, columns: Sequence[str]) -> None:
@@ -123,47 +114,66 @@ def _require_columns(path: Path, columns: Sequence[str]) -> None:
         )
 
 
-@dataclass(slots=True)
-class Tally:
-    """Counts of the rows of a table by outcome, warnings and errors.
+TEXTS: Final = ("outcome", "ski_name", "warnings", "reason", "study")
+BLANK: Final = ("warnings", "reason")
+"""Texts that are empty where there is nothing to say; of all others an empty cell is not a value."""
 
-    outcomes: number of rows by outcome.
-    warned: how many carry warnings.
-    first_failed, first_warned: number, 1 or more, and text of the first row that could not be computed, and of the
-        first with warnings.
-    studies: fingerprints of the studies of the rows.
+Reader: TypeAlias = Callable[[str], Any]
+
+
+def cell(value: Any) -> str:
+    """Text of a value in a CSV table: all digits, true or false, empty for None; formulas are made harmless.
+
+    >>> [cell(value) for value in (None, 0.1, 3, True, [1.0, 2.5], "=1")]
+    ['', '0.1', '3', 'true', '[1.0, 2.5]', "'=1"]
     """
+    kind = type(value)
+    if kind is float:
+        return repr(value)
+    if value is None:
+        return ""
+    if kind is str:
+        return protect_from_formulas(value)
+    if kind is bool:
+        return "true" if value else "false"
+    if isinstance(value, list | tuple):
+        return json.dumps(list(value))
+    return repr(value)
 
-    outcomes: Counter[str] = field(default_factory=Counter)
-    warned: int = 0
-    first_failed: tuple[int, str] | None = None
-    first_warned: tuple[int, str] | None = None
-    studies: set[Any] = field(default_factory=set)
 
-    @classmethod
-    def of(cls, rows: Iterable[Mapping[str, Any]]) -> Tally:
-        """Tally of rows by names."""
-        tally = cls()
-        for number, row in enumerate(rows, start=1):
-            tally.outcomes[str(row["outcome"])] += 1
-            tally.studies.add(row.get("study"))
-            if row["outcome"] == FAILED and tally.first_failed is None:
-                tally.first_failed = (number, str(row.get("reason")))
-            if warnings := row.get("warnings"):
-                tally.warned += 1
-                tally.first_warned = tally.first_warned or (number, warnings)
-        return tally
+def read_cells(place: str, columns: Sequence[str], cells: Sequence[str], readers: Sequence[Reader]) -> list[Any]:
+    """Values of a row from its cells, one reader for each; `place` names the row in errors."""
+    if len(cells) != len(columns):
+        raise ParameterError(
+            "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line"
+        ).tag("wrong_number_of_cells", place=place, n_columns=len(columns), n_cells=len(cells))
+    values = []
+    for name, text, read in zip(columns, cells, readers, strict=True):
+        try:
+            values.append(read(text))
+        except (ValueError, TypeError):
+            raise ParameterError("{place}: {name} is {text!r}; it must be a number. Correct or remove it").tag(
+                "wrong_kind", place=place, name=name, text=text
+            ) from None
+    return values
 
-    @property
-    def rows(self) -> int:
-        """Number of counted rows."""
-        return self.outcomes.total()
 
-    @property
-    def failed(self) -> int:
-        """Number of rows that could not be computed."""
-        return self.outcomes[FAILED]
+def _cell_reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
+    """Function that converts a cell's text to a text, number, switch or list, by the column's name."""
+    if name in TEXTS or (name in keys and keys[name].kind == "text"):
+        empty = "" if name in BLANK else None
+        return lambda text: remove_protection(text) if text else empty
+    number = int if name in keys and keys[name].kind == "whole number" else float
 
-    def counts(self) -> dict[str, int]:
-        """Number of rows with each outcome, the most frequent first."""
-        return dict(sorted(self.outcomes.items(), key=lambda pair: (-pair[1], pair)))
+    def read(text: str) -> Any:
+        if text == "":
+            return None
+        if text[0] in "[tTfF":
+            if text[0] == "[":
+                return [float(number) for number in json_value(text)]
+            if text.lower() not in ("true", "false"):
+                raise ValueError(text)
+            return text.lower() == "true"
+        return number(text if mark == "." else text.replace(",", "."))
+
+    return read
