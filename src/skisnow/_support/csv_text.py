@@ -48,24 +48,16 @@ class UnreadableTextError(Exception):
 
 
 def decode(data: bytes) -> DecodedText:
-    """Decode a text file.
-
-    data: the whole file.
-    Raises UnreadableTextError: the bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
-    """
+    """Decode a text file; UnreadableTextError unless it is UTF-8, UTF-16 with byte order mark, or Windows-1252."""
     try:
         text = decoded(data)
     except NoTextError as error:
         raise _binary_error(str(error) if error.place.startswith("byte") else error.place) from None
-    _refuse_control_characters(data if text.codec != "utf-16" else text.text.encode())
+    plain = data if text.codec != "utf-16" else text.text.encode()
+    control = len(plain) - len(plain.translate(None, _CONTROL_BYTES))
+    if control > _CONTROL_SHARE * len(plain):
+        raise _binary_error(f"{control} control characters among {len(plain)} bytes")
     return text
-
-
-def _refuse_control_characters(data: bytes) -> None:
-    """Reject bytes with a large share of control characters, as a binary file has."""
-    control = len(data) - len(data.translate(None, _CONTROL_BYTES))
-    if control > _CONTROL_SHARE * len(data):
-        raise _binary_error(f"{control} control characters among {len(data)} bytes")
 
 
 def _binary_error(value: str) -> UnreadableTextError:

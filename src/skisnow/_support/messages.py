@@ -169,12 +169,6 @@ def _translate_and_fill(template: str, plural: str | None, fields: dict[str, Any
     return _formatter(language).vformat(template, (), fields)
 
 
-@cache
-def _formatter(language: str) -> LocalFormatter:
-    """Formatter of a language, the same object for each call."""
-    return LocalFormatter(language)
-
-
 class LocalFormatter(Formatter):
     """Formatter like `str.format` that writes numbers, dates and messages in a language."""
 
@@ -191,7 +185,8 @@ class LocalFormatter(Formatter):
         if isinstance(value, Real):
             return self._format_number(value, format_spec)
         if isinstance(value, date) and not format_spec:
-            return self._format_date(value)
+            month = f" {_MONTHS[value.month - 1]} " if self._language == ENGLISH else f". {value.month}. "
+            return f"{value.day}{month}{value.year}" + (f", {value:%H:%M}" if isinstance(value, datetime) else "")
         if isinstance(value, list | tuple | set | frozenset | dict):
             return self._format_list(value, format_spec)
         return format(value if isinstance(value, str) or format_spec else str(value), format_spec)
@@ -212,12 +207,9 @@ class LocalFormatter(Formatter):
         text = ("; " if numbers and any("," in item for item in items) else ", ").join(items)
         return f"[{text}]" if numbers and isinstance(values, tuple) else text
 
-    def _format_date(self, value: date) -> str:
-        """Date with the month's name in English and its number in German; with the time if it has one."""
-        month = f" {_MONTHS[value.month - 1]} " if self._language == ENGLISH else f". {value.month}. "
-        return f"{value.day}{month}{value.year}" + (f", {value:%H:%M}" if isinstance(value, datetime) else "")
 
-
+_formatter: Final = cache(LocalFormatter)
+"""Formatter of a language, the same object for each call."""
 _OUTCOMES: Final = (
     template("finished"), template("distance reached"), template("end of slope"), template("tipped over"),
     template("fell"), template("airborne"), template("sunk"), template("missed gate"), template("energy open"),

@@ -17,7 +17,7 @@ from typing import Final
 
 from .errors import ParameterError
 from .messages import Message
-from .user_files import plain_bytes
+from .user_files.text_files import plain_bytes
 
 SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 _FORMS: Final = {
@@ -263,48 +263,36 @@ def csv_rows(
     named = named_separator(text[:_HEAD])
     separator = named or most_frequent_separator(text[:_HEAD])
     lines: Iterator[list[str]] = csv.reader(io.StringIO(text), delimiter=separator)
+    first, mark = 1, "."  # row of the header, and decimal mark
     if named:
         next(lines)
-    mark = "."
+        first = 2
     try:
         if separator != ",":
             every = list(lines)
             mark, lines = decimal_mark([chain.from_iterable(every[1:])], separator=separator), iter(every)
-        yield from _parse_rows(path, lines, columns, further, action, mark, 2 if named else 1)
+        head = column_names(next(lines, []), (*columns, *further))
+        missing = [name for name in columns if name not in head]
+        if missing:
+            raise ParameterError("{path}, row {row}: column {column} is missing among {columns}. {action}").tag(
+                "missing_column", path=path, row=first, column=missing[0], columns=head, action=action
+            )
+        twice = [name for name in (*columns, *further) if head.count(name) > 1]
+        if twice:
+            raise ParameterError("{path}, row {row}: the column {column} is there twice. Keep one of them.").tag(
+                "repeated_column", path=path, row=first, column=twice[0]
+            )
+        places = {name: head.index(name) for name in (*columns, *further) if name in head}
+        for row, cells in enumerate(lines, start=first + 1):
+            if any(cell.strip() for cell in cells[len(head) :]):
+                raise ParameterError(
+                    "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps because of "
+                    "decimal commas. {action}"
+                ).tag("too_many_cells", path=path, row=row, count=len(cells), columns=len(head), action=action)
+            if any(cell.strip() for cell in cells):
+                values = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}
+                yield CsvRow(path, row, values, action, mark)
     except csv.Error as error:
         raise ParameterError("{path} is not CSV text ({error}). {action}").tag(
             "not_csv", path=path, error=error, action=action
         ) from error
-
-
-def _parse_rows(
-    path: Path,
-    lines: Iterator[list[str]],
-    columns: Sequence[str],
-    further: Sequence[str],
-    action: Message,
-    mark: str,
-    first: int,
-) -> Iterator[CsvRow]:
-    """Rows below the header, without blank ones; rejects missing or repeated columns and cells beyond the header."""
-    head = column_names(next(lines, []), (*columns, *further))
-    missing = [name for name in columns if name not in head]
-    if missing:
-        raise ParameterError("{path}, row {row}: column {column} is missing among {columns}. {action}").tag(
-            "missing_column", path=path, row=first, column=missing[0], columns=head, action=action
-        )
-    twice = [name for name in (*columns, *further) if head.count(name) > 1]
-    if twice:
-        raise ParameterError("{path}, row {row}: the column {column} is there twice. Keep one of them.").tag(
-            "repeated_column", path=path, row=first, column=twice[0]
-        )
-    places = {name: head.index(name) for name in (*columns, *further) if name in head}
-    for row, cells in enumerate(lines, start=first + 1):
-        if any(cell.strip() for cell in cells[len(head) :]):
-            raise ParameterError(
-                "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps because of "
-                "decimal commas. {action}"
-            ).tag("too_many_cells", path=path, row=row, count=len(cells), columns=len(head), action=action)
-        if any(cell.strip() for cell in cells):
-            values = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}
-            yield CsvRow(path, row, values, action, mark)

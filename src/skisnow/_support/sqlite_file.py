@@ -35,19 +35,17 @@ def connect(place: Path | None, *, mode: Mode = "rwc", timeout_s: float = 0.0) -
 
     Raises sqlite3.Error: the file cannot be opened; much damage shows only when it is read.
     """
+    uri = ":memory:"
+    if place is not None:
+        name = quote(os.fsencode(place.absolute().as_posix()))
+        uri = f"file://{'' if name.startswith('/') else '/'}{name}?mode={mode}"
     return sqlite3.connect(
-        ":memory:" if place is None else _sqlite_uri(place, mode),
+        uri,
         uri=place is not None,
         timeout=timeout_s,
         isolation_level=None,
         check_same_thread=False,
     )
-
-
-def _sqlite_uri(place: Path, mode: Mode) -> str:
-    """URI of a file for SQLite with its mode of access."""
-    name = quote(os.fsencode(place.absolute().as_posix()))
-    return f"file://{'' if name.startswith('/') else '/'}{name}?mode={mode}"
 
 
 def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
@@ -81,10 +79,7 @@ def place_reason(error: BaseException) -> str | None:
 
 
 def first_damage(database: sqlite3.Connection) -> str | None:
-    """First finding of SQLite's integrity check, which takes a while; None without a finding.
-
-    Call it after an error to report the damage.
-    """
+    """First finding of SQLite's integrity check, which takes a while, to report an error; None without a finding."""
     with suppress(sqlite3.Error, UnicodeDecodeError):
         (message,) = database.execute("pragma integrity_check(1)").fetchone()
         return None if message == "ok" else " ".join(str(message).split())

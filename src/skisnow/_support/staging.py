@@ -51,7 +51,10 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     last: name of the file whose presence shows that all others are complete: removed first, moved last.
     """
     try:
-        hidden, lock = _new_hidden(folder)
+        with _lock_folder(folder):
+            hidden = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+            lock = _locked(hidden)  # None where the system has no locks
+        (hidden / _FILES).mkdir()
     except OSError as error:
         raise cannot_write(folder, error) from error
     stage = Stage(hidden / _FILES)
@@ -74,10 +77,7 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
 
 
 def prepare_folder(folder: Path) -> list[str]:
-    """Create a folder if needed, check that it can be written, and complete or remove stages of killed processes.
-
-    Returns: a sentence about each of these stages.
-    """
+    """Prepare a folder for writing; returns a sentence about each completed or removed stage of a killed process."""
     require_writable(folder)
     try:
         with _lock_folder(folder):
@@ -101,15 +101,6 @@ def _finish_or_remove(hidden: Path) -> str | None:
         shutil.rmtree(hidden, ignore_errors=True)
         if lock is not None:
             os.close(lock)
-
-
-def _new_hidden(folder: Path) -> tuple[Path, int | None]:
-    """New hidden folder next to the output, with its lock, or None where the system has no locks."""
-    with _lock_folder(folder):
-        hidden = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
-        lock = _locked(hidden)
-    (hidden / _FILES).mkdir()
-    return hidden, lock
 
 
 def _replace_files(hidden: Path) -> None:

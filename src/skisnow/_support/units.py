@@ -232,10 +232,7 @@ def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
 
 
 def field_facts(thing: Any, units: dict[str, str], *, title: str = "") -> Facts:
-    """Title and rows of a dataclass's repr: for each field its short value, for an array its shape and range.
-
-    units: unit by the name of the field, appended to its numbers.
-    """
+    """Title and rows of a dataclass's repr: short values with the units by name; for an array its shape and range."""
     shown = [field.name for field in fields(thing) if field.repr]
     rows = [(name, _short_text(getattr(thing, name), units.get(name, ""))) for name in shown]
     return Facts(title, tuple(rows))

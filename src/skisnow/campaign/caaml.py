@@ -22,7 +22,8 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.spreadsheet_text import number
 from .._support.units import CM, DEGREE, MM, ZERO_CELSIUS
-from .._support.user_files import ContentError, Element, plain_bytes, xml_tree
+from .._support.user_files.text_files import ContentError, plain_bytes
+from .._support.user_files.xml_elements import Element, xml_tree
 from ..parameters.quantity import LARGEST
 from .problems import error
 from .snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit

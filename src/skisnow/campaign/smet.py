@@ -22,7 +22,7 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.spreadsheet_text import number
 from .._support.units import Facts, Shown
-from .._support.user_files import ContentError, plain_bytes
+from .._support.user_files.text_files import ContentError, plain_bytes
 from ..parameters import Allowed, Declared, Quantity
 from ..parameters.quantity import LARGEST
 from .problems import error

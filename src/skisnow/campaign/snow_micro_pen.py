@@ -21,7 +21,7 @@ from .._support.arrays import FloatArray, IntArray
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, MM, Facts, Shown, amount
-from .._support.user_files import ContentError, plain_bytes
+from .._support.user_files.text_files import ContentError, plain_bytes
 from ..parameters import Allowed, Declared, Quantity
 from .problems import error
 

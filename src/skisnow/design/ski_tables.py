@@ -13,7 +13,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import decimal_mark, number
-from .._support.user_files import plain_bytes
+from .._support.user_files.text_files import plain_bytes
 from ..campaign.importing.sheets import Sheet, column_letters, read_sheets
 from ..campaign.reading.headings import FORM, conversion, known_unit, named_unit, plain_heading, units_for
 from ..parameters import suggest_and_list

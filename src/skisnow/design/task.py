@@ -14,7 +14,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import N_PER_MM2, N_PER_MM3
-from .._support.user_files import read_toml
+from .._support.user_files.text_files import read_toml
 from ..carving.answer import asked_snow
 from ..carving.outputs import FORCE_ALONG_EDGE, OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question

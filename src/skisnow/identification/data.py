@@ -19,7 +19,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from .._support.units import DEGREE
-from .._support.user_files import is_file
+from .._support.user_files.text_files import is_file
 from ..parameters import build_declared, checked_table, suggest_and_list
 from ..scenario import Plane, ScenarioFile
 from ..scenario.identify_section import Site

@@ -19,8 +19,8 @@ from .._support.errors import ParameterError, require_choice, require_range
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import require_ending, write_file
 from .._support.units import DEGREE, Facts, Shown, amount
-from .._support.user_files import ContentError, plain_bytes, plain_text
 from .._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
+from .._support.user_files.text_files import ContentError, plain_bytes, plain_text
 from ..geometry.vectors import angles_of
 from ..scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots
 from .c3d import Values, c3d_content

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.units import unit_of_name
-from .._support.user_files import shown_value
+from .._support.user_files.text_files import shown_value
 
 if TYPE_CHECKING:
     from .._support.arrays import BoolArray, FloatArray

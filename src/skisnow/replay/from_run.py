@@ -161,9 +161,10 @@ def assemble_replay(
         points[:, 2] = np.where(np.isfinite(points[:, 2]), points[:, 2], _heights(slope, points))
         track = replace(track, place=points)
     skier = None
-    if setting.body is not None and setting.boots is not None:
-        (height, weight), boots = setting.body, (setting.boots.place, _boot_axes(setting.boots).swapaxes(-1, -2))
-        joints = drawn_joints(height, arrays["place"], arrays["attitude"], boots, arrays["centre"])
+    if setting.body is not None and (boots := setting.boots) is not None:
+        height, weight = setting.body
+        axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
+        joints = drawn_joints(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
         skier = ReplaySkier(height=height, weight=weight, joints=joints)
     return Replay(
         title=title,

@@ -15,7 +15,8 @@ import numpy as np
 from .._support.errors import SkisnowError, SkisnowWarning
 from .._support.messages import Message
 from .._support.units import DEGREE
-from .._support.user_files import is_file, read_json
+from .._support.user_files.json_text import read_json
+from .._support.user_files.text_files import is_file
 from ..comparison.distances import arc_lengths
 from ..simulation.run_summary import run_gates
 from ..track.course.gates_table import gate_rows

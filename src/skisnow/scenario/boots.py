@@ -18,8 +18,8 @@ from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
 from .._support.units import DEGREE, Facts, Shown, ends
-from .._support.user_files import plain_text
 from .._support.user_files.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
+from .._support.user_files.text_files import plain_text
 from ..geometry.vectors import axes_of
 from ..parameters import suggest_and_list
 

@@ -9,7 +9,7 @@ from .._support.errors import ParameterError, most_similar, suggest_and_list
 from .._support.messages import Message, joined
 from .._support.spreadsheet_text import is_number
 from .._support.units import without_unit
-from .._support.user_files import ContentError, toml_values
+from .._support.user_files.text_files import ContentError, toml_values
 from ..parameters import InputValue, Word, quantities, values_of
 from .scenario import Scenario
 

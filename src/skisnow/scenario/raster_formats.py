@@ -17,7 +17,7 @@ from .._support.environment import import_extra
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
-from .._support.user_files import is_file, plain_text
+from .._support.user_files.text_files import is_file, plain_text
 from .map_system import LENGTHS, MapSystem, length_unit, map_system, raster_errors
 from .raster import PlacedValues, Raster, number_within, placed_heights, require_places, require_size
 

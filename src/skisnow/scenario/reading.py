@@ -16,7 +16,7 @@ from typing import Any, Final
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
 from .._support.units import ShownFields
-from .._support.user_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
+from .._support.user_files.text_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
 from ..parameters import suggest_and_list
 from ..ski.ski_file import Sources
 from .building import build, changed_scenario

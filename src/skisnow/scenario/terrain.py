@@ -14,7 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import Facts, Shown, amount, ends
-from .._support.user_files import is_file
+from .._support.user_files.text_files import is_file
 from ..geometry import surfaces
 from ..geometry.surfaces import Grid, smoothed
 from ..parameters import Allowed, Condition, Label, Quantity, Word, require_declared

@@ -14,7 +14,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, template
-from .._support.user_files import read_toml, shown_value
+from .._support.user_files.text_files import read_toml, shown_value
 from ..parameters import InputValue, build_declared, suggest_and_list
 from .assembling import ArcOutline, assembled_ski, stiffness_table, width_of_table
 from .file_keys import BASE, LISTS, RIGID, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile

@@ -14,7 +14,7 @@ import numpy as np
 from .._support.errors import OutputError, ParameterError
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
-from .._support.user_files import is_file, toml_text
+from .._support.user_files.text_files import is_file, toml_text
 from ..parameters import SMALLEST, suggest_and_list
 from ..snow import SnowProperties, published_snow, snow_from_results
 from ..snow.measured_range import with_range_warnings

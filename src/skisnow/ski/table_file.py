@@ -22,7 +22,7 @@ from .._support.spreadsheet_text import (
     named_separator,
     with_decimal_point,
 )
-from .._support.user_files import plain_bytes, shown_value
+from .._support.user_files.text_files import plain_bytes, shown_value
 from ..parameters import suggest_and_list
 from .file_keys import COLUMNS
 from .file_values import checked, warn_of_unusual

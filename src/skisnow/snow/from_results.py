@@ -13,7 +13,8 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
-from .._support.user_files import ContentError, read_json
+from .._support.user_files.json_text import read_json
+from .._support.user_files.text_files import ContentError
 from .mean_snow import (
     mean_snow,
     no_used_experiment,

@@ -49,7 +49,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.transfer:FileImports.name": "the name that it has just written",
     "web.transfer:FileImports.content": "bytes for cli.campaign:_ask_questions's reader",
     "web.uploads:files_below": "bytes for a download",
-    "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
+    "web.pages.replay:_outcome_words": "summary.json, by read_record as web.runs:Runs._over",
     "report.summaries:_slope_angle_from_summary": "summary.json of a run, by read_json as other records",
     "web.replay_addresses:add_addresses.first": "package data",
     "web.replay_addresses:RunFolders.title": "job of a run, by read_record as web.runs:Runs._over",

@@ -14,13 +14,15 @@ import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.messages import Message
-from skisnow._support.processes.batch import Pool, run_batch, worker_count
-from skisnow._support.processes.crews import (
+from skisnow._support.processes.batch import (
     LARGEST_FOR_A_PIPE,
+    Pool,
     _compute_in_worker,
     begin_worker,
     compute_rows,
     process_crew,
+    run_batch,
+    worker_count,
 )
 from skisnow._support.processes.kept_rows import KeptRows, NumberedText
 from tests.coded import raises
@@ -105,7 +107,7 @@ def test_a_chunk_reports_time_per_point(points: list[float], each: float, monkey
         clock[0] += seconds
         return {}
 
-    monkeypatch.setattr("skisnow._support.processes.crews.time.perf_counter", lambda: clock[0])
+    monkeypatch.setattr("skisnow._support.processes.batch.time.perf_counter", lambda: clock[0])
     assert compute_rows(lasting, list(enumerate(points))).seconds_per_point == each
 
 
@@ -141,9 +143,9 @@ def test_processes_are_let_go_before_or_behind_their_last_point(
 
     leash = SimpleNamespace(close=lambda: done.append("let go"))
     context = SimpleNamespace(Pipe=lambda **_: (None, leash))
-    monkeypatch.setattr("skisnow._support.processes.crews.multiprocessing.get_context", lambda _: context)
+    monkeypatch.setattr("skisnow._support.processes.batch.multiprocessing.get_context", lambda _: context)
     executor = SimpleNamespace(shutdown=shut_down)
-    monkeypatch.setattr("skisnow._support.processes.crews.ProcessPoolExecutor", lambda *_, **_options: executor)
+    monkeypatch.setattr("skisnow._support.processes.batch.ProcessPoolExecutor", lambda *_, **_options: executor)
     process_crew(dict, 2).close(at_once)
     assert done[:2] == order
 

@@ -15,15 +15,8 @@ import pytest
 
 import skisnow
 from skisnow._support.errors import SkisnowError
-from skisnow._support.user_files import (
-    ContentError,
-    json_value,
-    plain_bytes,
-    plain_text,
-    read_record,
-    toml_values,
-    workbook,
-)
+from skisnow._support.user_files import workbook
+from skisnow._support.user_files.json_text import json_value, read_record
 from skisnow._support.user_files.text_files import (
     DEEPEST,
     LARGEST_WHOLE,
@@ -31,9 +24,13 @@ from skisnow._support.user_files.text_files import (
     LONGEST_TEXT,
     MOST_DOTS,
     MOST_TOML_BYTES,
+    ContentError,
     named,
+    plain_bytes,
+    plain_text,
     require_sound,
     shown,
+    toml_values,
     too_deep,
 )
 from skisnow.scenario import load_scenario, read_profile

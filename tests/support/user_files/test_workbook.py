@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
-from skisnow._support.user_files import ContentError, workbook, workbook_sheets, xml_tree
-from skisnow._support.user_files.xml_elements import DEEPEST
+from skisnow._support.user_files import workbook
+from skisnow._support.user_files.text_files import ContentError
+from skisnow._support.user_files.workbook import workbook_sheets
+from skisnow._support.user_files.xml_elements import DEEPEST, xml_tree
 from tests.coded import Coded, coded, raises
 
 

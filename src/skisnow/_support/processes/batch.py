@@ -1,25 +1,35 @@
-"""One function for many points on all cores or an executor: resumable, the same rows for any number of workers."""
+"""One function for many points on all cores or an executor: resumable, the same rows for any number of workers.
+
+Workers are processes or threads of this computer, or an executor of the caller; they compute chunks of points.
+"""
 
 from __future__ import annotations
 
+import multiprocessing
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
     CancelledError,
     Executor,
     Future,
+    ProcessPoolExecutor,
     ThreadPoolExecutor,
     wait,
 )
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from itertools import islice
+from multiprocessing.connection import Connection
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import CHUNK_S, Crew, Done, Numbered, PointFunction, compute_rows, process_crew
 from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -95,10 +105,7 @@ def compute_missing(
     executor: ExecutorLike | None = None,
     progress: Progress | None = None,
 ) -> None:
-    """Compute the missing rows of points and add them to `kept`; memory does not grow with their number.
-
-    numbers: numbers of the requested points; None: all.
-    """
+    """Compute the missing rows of points (only those in `numbers` if given) in little memory, and keep them."""
     wanted = worker_count(workers)
     numbers = range(len(points)) if numbers is None else numbers
     finished = bytearray(len(points))
@@ -136,13 +143,12 @@ class Pool:
         """Yield lists of finished rows with their numbers, in the order in which they are finished.
 
         points: pairs of number and point; an iterator is only advanced as needed.
-        count: number of points; may be omitted for a list.
+        count: number of points (default: counted, so that an iterator is read to its end first).
         """
         if self._executor is None and self._workers == 1:
             return ([(number, json_text(self._function(point)))] for number, point in points)
         if count is None:
-            if not isinstance(points, Collection):
-                raise ParameterError("count, the number of points, is missing.").tag("count_missing")
+            points = list(points)
             count = len(points)
         if count == 0:
             return iter(())
@@ -209,10 +215,7 @@ LOCAL: Final = ("processes", "threads")
 
 
 def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Crew:
-    """Crew for an executor: processes or threads of this computer, or an executor of the caller.
-
-    workers: number of workers of this computer, or of an executor that does not report its number.
-    """
+    """Crew for an executor of the caller, or of `workers` processes or threads of this computer."""
     require_executor(executor)
     if isinstance(executor, Executor):
         return Crew(executor, partial(compute_rows, function), _workers_of(executor) or workers)
@@ -236,3 +239,119 @@ def _workers_of(executor: Executor) -> int | None:
     names = ("_max_workers", "num_workers")
     workers = next((getattr(executor, name) for name in names if hasattr(executor, name)), None)
     return workers if isinstance(workers, int) and workers > 0 else None
+
+
+LARGEST_FOR_A_PIPE: Final = 64
+"""Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
+LARGEST: Final = 10_000
+"""Points of one chunk: some megabytes of rows."""
+CHUNK_S: Final = 0.25
+"""Work (s) that is handed over at once, and that a kill loses (handing over costs 1 ms here)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crew:
+    """Workers of an executor that compute chunks of points; a submitted chunk returns a future with its rows.
+
+    executor: it is not shut down here.
+    compute: function from the points of a chunk to its rows; see `compute_rows`.
+    size: number of chunks that the executor computes at once.
+    close: function that stops the workers that this crew started; at once, in the middle of their work, if its argument
+        is True.
+    largest: maximum number of points of a chunk.
+    """
+
+    executor: Executor
+    compute: Callable[[list[Numbered]], Done]
+    size: int
+    close: Callable[[bool], object] = bool
+    largest: int = LARGEST
+
+    def submit(self, points: list[Numbered]) -> Future[Done]:
+        """Submit a chunk to the workers; a process that starts with it ignores Ctrl-C, which the parent handles."""
+        with interrupts_ignored():
+            return self.executor.submit(self.compute, points)
+
+
+def process_crew(function: PointFunction, workers: int) -> Crew:
+    """Crew of new processes on this computer.
+
+    They start with the first chunk ("spawn", on every system) and stay, because loading the libraries takes long. They
+    end when the connection to their parent closes, however the parent ends.
+    """
+    context = multiprocessing.get_context("spawn")
+    alive, leash = context.Pipe(duplex=False)
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_prepare_worker, initargs=(function, alive))
+
+    def close(at_once: bool) -> None:
+        if at_once:
+            leash.close()
+        executor.shutdown(wait=True, cancel_futures=True)
+        leash.close()
+
+    return Crew(executor, _compute_in_worker, workers, close, LARGEST_FOR_A_PIPE)
+
+
+class _Worker:
+    """Function of this worker process, set by `_prepare_worker`; None in every other process."""
+
+    function: PointFunction | None = None
+
+
+def _prepare_worker(function: PointFunction, alive: Connection) -> None:
+    """Store the function in this worker process, and end the process when its parent ends, however that ends."""
+    begin_worker(alive)
+    _Worker.function = function
+
+
+def _compute_in_worker(points: list[Numbered]) -> Done:
+    """Compute points in this worker process by the function that its pool set; an error without a pool."""
+    if _Worker.function is None:
+        raise SkisnowError("A worker was not started by a Pool.").tag("no_pool")
+    return compute_rows(_Worker.function, points)
+
+
+@contextmanager
+def interrupts_ignored() -> Iterator[None]:
+    """Ignore interrupts while processes start, which inherit this; no effect outside the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def begin_worker(alive: Connection) -> None:
+    """Set up a worker process: it ignores Ctrl-C, and ends at once when the parent's end of `alive` is closed."""
+
+    def exit_when_closed() -> None:
+        try:
+            alive.recv()
+        except (EOFError, OSError):
+            os._exit(1)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=exit_when_closed, daemon=True).start()
+
+
+PointFunction: TypeAlias = Callable[[Any], Row | list[Any]]
+Numbered: TypeAlias = tuple[int, Any]
+"""A point and its number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """Result of a chunk: its rows with their numbers, and the mean wall time of a point (s)."""
+
+    rows: list[NumberedText]
+    seconds_per_point: float
+
+
+def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
+    """Call a function for numbered points; returns their rows and the mean time of a point (s)."""
+    start = time.perf_counter()
+    rows = [(number, json_text(function(point))) for number, point in points]
+    return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))

@@ -14,7 +14,7 @@ from typing import Any, Final, Self, TypeAlias
 from ..errors import OutputError, ParameterError
 from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_sound_pages
 from ..staging import cannot_write
-from ..user_files import own_json
+from ..user_files.json_text import own_json
 
 Row: TypeAlias = dict[str, Any]
 """Values of a point by name; a study keeps a list of values, whose names are an entry of the batch."""

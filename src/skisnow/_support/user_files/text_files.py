@@ -16,11 +16,7 @@ from ..messages import Message
 
 
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
-    """Read the bytes of a regular file.
-
-    Raises ContentError: the file does not exist, cannot be read, is not a regular file, or has more bytes; or the name
-        is invalid.
-    """
+    """Read a regular file; ContentError if it is missing, unreadable, no regular file, or has more bytes."""
     try:
         if not stat.S_ISREG((place := Path(path)).stat().st_mode):
             raise ContentError("{path} cannot be read: it is a folder, a pipe or the like. Check the path.").tag(
@@ -236,10 +232,7 @@ def toml_text(value: object) -> str:
 
 
 def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
-    """Parse a TOML text of a user within limits; a ContentError with the title of the text if it is not valid.
-
-    text: text with line feeds at the ends of lines.
-    """
+    """Parse a TOML text of a user, with line feeds, within limits; a ContentError with its title if it is not valid."""
     try:
         if len(text) > MOST_TOML_BYTES:
             raise ContentError("the text has {count} characters; allowed are {longest}.").tag(

@@ -191,21 +191,16 @@ def _read_rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool
 
 
 def _cell_text(value: object) -> str:
-    """Text of a cell's value: "" for None, whole floats without ".0", dates in ISO form, line breaks as spaces."""
+    """Text of a cell's value: "" for None, whole floats without ".0", ISO dates, line breaks as spaces."""
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value).upper()
     if isinstance(value, float):
         return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
-    return _date_text(value) if isinstance(value, date | time) else re.sub(r"\s*[\r\n]\s*", " ", str(value)).strip()
-
-
-def _date_text(value: date | time) -> str:
-    """ISO text of a date or time to the second; a date alone for midnight."""
     if isinstance(value, datetime) and value.time() == time():
         return value.date().isoformat()
     if isinstance(value, datetime | time):
         return value.isoformat(timespec="seconds")
-    return value.isoformat()
+    return value.isoformat() if isinstance(value, date) else re.sub(r"\s*[\r\n]\s*", " ", str(value)).strip()
 
 
 def _require_sound(data: bytes) -> None:

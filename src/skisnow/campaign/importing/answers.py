@@ -11,7 +11,7 @@ from typing import Any, Final, Self
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.staging import write_file
-from ..._support.user_files import read_toml, toml_text, toml_values
+from ..._support.user_files.text_files import read_toml, toml_text, toml_values
 from ..problems import Problem, error
 from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
 from ..reading.headings import plain_heading

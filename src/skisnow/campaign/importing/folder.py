@@ -13,7 +13,8 @@ from typing import Final, Literal
 from ..._support.errors import OutputError
 from ..._support.messages import Message
 from ..._support.staging import prepare_folder, staged, write_file
-from ..._support.user_files import own_json, toml_text
+from ..._support.user_files.json_text import own_json
+from ..._support.user_files.text_files import toml_text
 from ..reading.campaign_file import CAMPAIGN_FILE
 from .answers import SECTION, Answers, Dialogue
 from .columns import PLATE, TOOL, Note, gauge_steps_mm, length_mm, stated_observers, stated_plates, stated_tools

@@ -12,8 +12,8 @@ from ..._support.csv_text import CsvText, UnreadableTextError, decode
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
-from ..._support.user_files import ContentError, workbook_sheets
-from ..._support.user_files.workbook import Layout, Rows, sheet_layouts
+from ..._support.user_files.text_files import ContentError
+from ..._support.user_files.workbook import Layout, Rows, sheet_layouts, workbook_sheets
 from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
 from ..reading.workbook_files import is_workbook

@@ -9,7 +9,7 @@ from typing import Annotated, Final
 
 from ..._support.messages import Message
 from ..._support.units import MM
-from ..._support.user_files import ContentError, toml_values
+from ..._support.user_files.text_files import ContentError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...parameters import Allowed, Quantity, own_quantities

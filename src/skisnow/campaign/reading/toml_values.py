@@ -12,7 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined
-from ..._support.user_files import shown_value
+from ..._support.user_files.text_files import shown_value
 from ...parameters import Quantity, build_declared, own_quantities
 from ..problems import Problem, error, warning
 

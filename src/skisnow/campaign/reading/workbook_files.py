@@ -12,8 +12,8 @@ from typing import Final
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
-from ..._support.user_files import ContentError, toml_text, workbook_sheets
-from ..._support.user_files.workbook import Rows
+from ..._support.user_files.text_files import ContentError, toml_text
+from ..._support.user_files.workbook import Rows, workbook_sheets
 from ..problems import Problem, error, warning
 from .campaign_file import CAMPAIGN_KEYS
 from .campaign_files import CampaignFiles

@@ -19,7 +19,7 @@ from typing import Final, TypeAlias
 from ..._support.csv_text import UnreadableTextError, decode
 from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
-from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
+from ..._support.user_files.text_files import MOST_TOML_BYTES, plain_bytes, toml_values
 from ..reading.campaign_files import CampaignFiles
 from ..reading.workbook_files import DESCRIPTION, unfold_workbooks
 

@@ -23,7 +23,8 @@ from sqlalchemy.exc import DatabaseError
 
 from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
-from ..._support.user_files import json_value, toml_values
+from ..._support.user_files.json_text import json_value
+from ..._support.user_files.text_files import toml_values
 from .engine import database_errors, reading, savepoint, writing
 from .rows import TIME, damage_error, entry_damage_error, require_type
 from .schema import campaign, journal, journal_entry

@@ -8,7 +8,7 @@ from typing import Final, TypeAlias
 
 from ..._support.errors import FieldDataError
 from ..._support.spreadsheet_text import csv_text, protect_from_formulas
-from ..._support.user_files import toml_text
+from ..._support.user_files.text_files import toml_text
 from ..problems import AppliedCorrection, Problem
 from ..reading.campaign import campaign_of_cells
 from ..reading.campaign_file import read_campaign_file

@@ -13,7 +13,7 @@ from ..._support.csv_text import UnreadableTextError
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
 from ..._support.spreadsheet_text import number
-from ..._support.user_files import natural_number
+from ..._support.user_files.text_files import natural_number
 from ..reading.campaign import read_description
 from ..reading.campaign_files import CampaignFiles, RawFiles
 from ..reading.header import split_header

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, LargeBinary, cast, select
 from sqlalchemy.exc import DatabaseError, NoResultFound
 
 from ..._support.errors import StoreError
-from ..._support.user_files import natural_number
+from ..._support.user_files.text_files import natural_number
 from .engine import is_file, savepoint
 from .folder import Progress, manifest_sha256, unsafe_because
 from .journal import as_bytes, entry_sha256, readable_entry

@@ -10,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from ..._support.errors import ParameterError
-from ..._support.user_files import read_toml
+from ..._support.user_files.text_files import read_toml
 from ...parameters import Allowed, Quantity, build_declared, checked_table, require_declared
 from ...snow import MeasuredRange
 from .speed_laws import WaterFilmFriction

@@ -14,7 +14,8 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.units import DEGREE
-from ..._support.user_files import ContentError, Element, plain_bytes, xml_tree
+from ..._support.user_files.text_files import ContentError, plain_bytes
+from ..._support.user_files.xml_elements import Element, xml_tree
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
 from .course import Course, Gate, Side, course_names, course_place
