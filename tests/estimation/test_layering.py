@@ -147,6 +147,14 @@ def test_an_exact_series_with_an_offset_gives_back_its_exponent(kappa: float) ->
     np.testing.assert_allclose(2.0 / found.load_exponent - 2.0, kappa, atol=1e-4)
 
 
+def test_flags_need_a_hardness_in_any_unit_of_force() -> None:
+    depth = layered_series(np.full(4, 1e9), FIFTY_PERCENT, 1e-4, 0.0).penetration_depth.reshape(4, -1)
+    for unit in (1.0, 1e-10):
+        hardness = 1e9 * unit * np.array([1.0, 0.0, -1.0, np.nan])
+        flagged = layered(pressed(TOOL, ANGLE, depth, unit * LOADS), hardness, ReadingUncertainty(1e-7))
+        assert flagged.tolist() == [True, False, False, False]
+
+
 def test_even_snow_is_seldom_marked_and_layered_snow_is() -> None:
     """One in a hundred of 2000 even series is 20 ± 4.4; gauge and offset as in the reference campaign."""
     uncertainty = ReadingUncertainty(0.01e-3 / math.sqrt(12))

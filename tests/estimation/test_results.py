@@ -126,6 +126,7 @@ def test_the_same_seed_gives_the_same_numbers(reference: Campaign, results: Json
 
 def test_only_shear(make_campaign: MakeCampaign) -> None:
     results = results_of(make_campaign(shear=[("s1", "A", "blade", 90, 6, 250, 30)]))
+    assert "published_relations" not in results  # they take the place of measurements
     assert results["penetration"]["experiments"] == []
     assert [row["rmse_N"] for row in results["penetration"]["models"]] == [None] * 9
     assert results["penetration"]["selected"] is None
@@ -138,6 +139,7 @@ def test_only_shear(make_campaign: MakeCampaign) -> None:
 def test_only_one_flat_series(make_campaign: MakeCampaign) -> None:
     rows = [("p1", "A", "ski", 0, load, depth) for load, depth in ((100, 1.0), (200, 2.1), (300, 2.9))]
     results = results_of(make_campaign(rows))
+    assert "published_relations" not in results
     assert results["shear"]["experiments"] == []
     models = {row["id"]: row for row in results["penetration"]["models"]}
     assert models["H_V:a=linear,b=linear"]["b1"] is None

@@ -111,6 +111,7 @@ def test_cells_need_not_be_square(tmp_path: Path) -> None:
         (header(cellsize="1e300") + VALUES, coded("out_of_range", size=1e300)),
         (header(xllcorner=None) + VALUES, "invalid"),
         (header(yllcorner="inf") + VALUES, "invalid"),
+        (header(xllcorner="1e200") + VALUES, coded("out_of_range", axis="x", first=1e200, last=1e200)),
         (header(yllcorner="1e200") + VALUES, coded("out_of_range", axis="y", first=1e200, last=1e200)),
         (header(ncols="99999", nrows="99999") + VALUES, coded("out_of_range", n_columns=99999.0, n_rows=99999.0)),
         (header(ncols="7000", nrows="7000") + VALUES, "invalid"),
@@ -190,6 +191,14 @@ def test_the_prj_file_gives_the_units_of_an_esri_grid(tmp_path: Path) -> None:
         written(tmp_path, text, "heights.prj")
         with pytest.raises(ParameterError, match=fault):
             read_terrain(path)
+
+
+@pytest.mark.parametrize(("south", "target"), [("89.5", "EPSG:32647"), ("90.5", "EPSG:32632"), ("-91", "EPSG:32632")])
+def test_degrees_beyond_a_pole_have_a_zone_of_the_middle_of_the_map(tmp_path: Path, south: str, target: str) -> None:
+    path = written(tmp_path, header(cellsize="1e-5", xllcorner="100", yllcorner=south) + VALUES)
+    written(tmp_path, DEGREES, "heights.prj")
+    with raises(ParameterError, coded("in_degrees", target=target)):
+        read_terrain(path)
 
 
 @pytest.mark.parametrize("east", [1.0, -1.0])

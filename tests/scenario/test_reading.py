@@ -11,7 +11,7 @@ from skisnow import scenario_names
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import Plane, Profile, load_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS, parse_change
-from skisnow.scenario.reading import load_input
+from skisnow.scenario.reading import build_input, load_input
 from skisnow.scenario.resolution import CONDITIONS
 from skisnow.scenario.skier import Skier
 from tests.coded import Coded, coded, raises
@@ -194,6 +194,7 @@ def test_snow_and_ski_of_files(tmp_path: Path) -> None:
     assert found.values["snow.S_f_N_per_mm2"] == pytest.approx(0.4, rel=1e-12)
     assert (found.values["snow.site"], found.values["ski.file"], found.values["ski.name"]) == ("A", "ski.toml", None)
     assert set(found.files) == {path, tmp_path / "results.json", tmp_path / "ski.toml"}
+    assert found.values["ski.name"] is None  # the file names the ski's own file instead
     snow = load_scenario(path, changes={"S_f_N_per_mm2": 0.3}).contact.snow
     assert [snow.snow_hardness, snow.failure_shear_stress] == pytest.approx([0.2e9, 0.3e6], rel=1e-12)
 
@@ -379,3 +380,10 @@ def test_what_a_run_does_not_heed_may_stand_under_identify(tmp_path: Path) -> No
     )
     path.write_text(f"{scenario_text('carved-46m')}\n{section}", encoding="utf-8")
     assert load_scenario(path).sledge.mass == 80.0
+
+
+def test_a_scenario_from_python_has_the_ski_of_its_file() -> None:
+    plain = load_scenario("carved-46m")
+    name = scenario_file("carved-46m").values["ski.name"]
+    assert name is not None
+    assert build_input(load_input(plain)).values["ski.name"] == scenario_values(plain)["ski.name"] == name

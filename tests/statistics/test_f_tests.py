@@ -1,12 +1,16 @@
 """F tests and combined uncertainty."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy import integrate, stats
 from tests.coded import raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.statistics import expanded_factor, nested_f_test, welch_satterthwaite
-from skisnow.statistics.combined_uncertainty import random_effects_mean
+from skisnow.statistics.combined_uncertainty import percentile_interval, random_effects_mean, resampling_counts
+from skisnow.statistics.f_tests import _power
 
 from ..versions import EXACT_QUANTILES
 
@@ -125,3 +129,53 @@ def test_coverage(spread: float, least: float, most: float) -> None:
     draws = 4.0 + np.hypot(spread, errors) * rng.standard_normal((1000, 8))
     found = [random_effects_mean(x, errors) for x in draws]
     assert least < np.mean([each.low <= 4.0 <= each.high for each in found]) <= most
+
+
+@pytest.mark.parametrize(
+    ("n", "alpha", "shift"),
+    [(2, 1e-3, 31.0), (2, 0.05, 8.2), (5, 0.05, 3.0), (5, 0.05, 40.1), (30, 1e-3, 5.3), (100, 0.05, 38.8)],
+)
+def test_power_is_that_of_an_integral_also_where_scipy_has_no_number(n: int, alpha: float, shift: float) -> None:
+    """The normal power for each scatter that is drawn, over the distribution of drawn scatters."""
+    freedom = 2.0 * n - 2.0
+    critical = stats.t.isf(alpha / 2.0, freedom)
+    drawn = stats.chi(freedom, scale=1.0 / math.sqrt(freedom))
+
+    def missed(scatter: float) -> float:
+        inside = np.asarray(stats.norm.cdf([critical * scatter - shift, -critical * scatter - shift]))
+        return float((inside[0] - inside[1]) * drawn.pdf(scatter))
+
+    expected = 1.0 - integrate.quad(missed, 0.0, drawn.isf(1e-14), epsabs=1e-9, limit=200)[0]
+    assert _power(n, shift / math.sqrt(n / 2.0), alpha) == pytest.approx(expected, abs=1e-6)
+
+
+def test_percentile_interval() -> None:
+    """Linear between order statistics; an unknown sample is below the low end and above the high one."""
+    samples = np.stack((np.arange(101.0), 1000.0 - 2.0 * np.arange(101.0)), axis=1)
+    assert percentile_interval(samples, confidence=0.9) == pytest.approx(np.array([[5.0, 95.0], [810.0, 990.0]]))
+    samples[3, 0] = np.nan  # 0, 1, 2, 4, 5, ...: the fifth known number from below, the sixth from above
+    assert percentile_interval(samples, confidence=0.9)[0] == pytest.approx([5.0, 96.0])
+    samples[:6, 1] = np.nan
+    low, high = percentile_interval(samples, confidence=0.9).T
+    assert np.isfinite([low[0], high[0]]).all()
+    assert np.isnan([low[1], high[1]]).all()
+    for shape in ((0,), (0, 3), (0, 2, 4)):
+        none = percentile_interval(np.zeros(shape))
+        assert none.shape == (*shape[1:], 2)
+        assert np.isnan(none).all()
+    with raises(ParameterError, "wrong_shape"):
+        percentile_interval(1.0)
+    for confidence in (-0.5, 0.0, 1.0, 1.5):
+        with raises(ParameterError, "out_of_range"):
+            percentile_interval(samples, confidence=confidence)
+
+
+def test_resamples_come_in_pieces_of_some_megabytes_and_are_those_of_one_draw() -> None:
+    pieces = list(resampling_counts(1000, 600, np.random.default_rng(5)))
+    assert 1e6 < pieces[0].nbytes < 1e7
+    drawn = np.random.default_rng(5).integers(0, 1000, size=(600, 1000))
+    expected = np.stack([np.bincount(row, minlength=1000) for row in drawn])
+    np.testing.assert_array_equal(np.vstack(pieces), expected)
+    for units, resamples in ((0, 3), (3, -1)):
+        with raises(ParameterError, "out_of_range"):
+            list(resampling_counts(units, resamples, np.random.default_rng(5)))
