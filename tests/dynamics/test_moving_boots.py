@@ -210,7 +210,7 @@ def test_what_cannot_move_is_refused() -> None:
 def test_a_boot_turns_by_a_radian_at_most(degrees: float) -> None:
     """From poses whose axes are rounded: their product may exceed 1 or fall below -1."""
     for edge_angle in np.linspace(-1.0, 1.0, 9):
-        first = BootPose.of(np.zeros(3), edge_angle, 0.3, 0.1)
+        first = BootPose.of(np.zeros(3), edge_angle, 0.3 * edge_angle, 0.1)
         turn = axes_of(0.0, 0.0, np.radians(degrees))
         last = BootPose(first.place, first.axes @ turn)
         if degrees < 57.3:

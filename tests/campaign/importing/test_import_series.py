@@ -41,6 +41,7 @@ RIGHT = [
 ]  # fmt: skip
 ASKED = [
     [["Hang oben"], *PAIRS],
+    [PAIR, [10, 0.63], [50, 1.41]],
     [["Hang oben"], ["A", None, "B"], [30, None, 45], *PAIRS],
     [["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°"], *PAIRS],
     [["Versuch 1", None, "Versuch 2"], ["Kantwinkel", 30, "Kantwinkel 45°"], *PAIRS],
@@ -93,6 +94,7 @@ SECTIONS: list[list[str]] = [
 """Of each right case: heading row, first data row, row behind the last, columns, headings, units, rows of titles."""
 ISSUES: list[list[str]] = [
     ["table Hang oben:2=penetration 5 Hang oben:2 None Last [kg], Tiefe [mm]"],
+    ["table Hang oben:1=penetration 5 Hang oben:1 None Last [kg], Tiefe [mm]"],
     ["table Hang oben:4=penetration 5 Hang oben:4 None Last [kg], Tiefe [mm], Hang oben:2, Hang oben:3"],
     [
         "table Hang oben:3=penetration 5 Hang oben:3 None Last [kg], Tiefe [mm]",
