@@ -227,6 +227,9 @@ def test_a_shear_stress_beyond_what_was_measured_counts_in_a_turn_alone() -> Non
     assert "S_f 0.9 N/mm² is outside" in told
     assert answer_question(carve_question({**strong, "at_rest": True})).warnings == ()
     assert answer_question(carve_question({**REQUEST, "H_V_N_per_mm3": 0.2, "at_rest": True})).warnings == ()
+    for hardness in (0.01, 200.0):
+        (told,) = answer_question(carve_question({**REQUEST, "H_V_N_per_mm3": hardness, "at_rest": True})).warnings
+        assert f"H_V {hardness:g} N/mm³ is outside" in told
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve, differentiable_carve
 from skisnow.carving.outputs import CarveRequest, output_growth
-from skisnow.carving.result import Equilibrium
+from skisnow.carving.result import Equilibrium, _edge_holds
 from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives
 from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
@@ -323,6 +323,13 @@ def test_facts_and_total_force_of_an_equilibrium() -> None:
     assert facts.title == found.outcome
     for number in (present(found.side_force), present(found.contact_length), 1e3 * present(found.edge_depth).max()):
         assert f" {number:.4g} " in f" {texts}"
+    turn = present(found.request).conditions
+    assert [_edge_holds(turn, limit) for limit in (None, turn.side_force, 0.99 * turn.side_force)] == [
+        False,
+        True,
+        False,
+    ]
+    assert _edge_holds(turn._replace(side_force=0.0), None)
     assert replace(found, side_force=None).total_force is None
     assert replace(found, forebody_load=None).total_force is None
     assert replace(found, afterbody_load=None).total_force is None

@@ -4,7 +4,8 @@ import math
 import struct
 import sys
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.scenario import read_snow_map, read_terrain
 from skisnow.scenario.map_system import MapSystem, _scale, length_unit, map_system
 from skisnow.scenario.raster import Raster, placed_heights
+from skisnow.scenario.raster_formats import _heights, _require_north_up, _require_one_band
 from tests.coded import Coded, coded, raises
 
 CASES = Path(__file__).parents[3] / "shared" / "cases" / "terrain"
@@ -219,6 +221,31 @@ def test_geotiff_without_its_package_names_the_extra(tmp_path: Path, monkeypatch
     monkeypatch.setitem(sys.modules, "rasterio", None)
     with raises(ParameterError, "package_missing", extra="geotiff"):
         read_terrain(written(tmp_path, "", "heights.tif"))
+
+
+def test_bands_heights_and_position_of_a_geotiff_without_its_package() -> None:
+    def source(*colours: str) -> SimpleNamespace:
+        return SimpleNamespace(colorinterp=[SimpleNamespace(name=name) for name in colours])
+
+    for good in (("gray",), ("gray", "alpha"), ("undefined",)):
+        _require_one_band("a.tif", source(*good))
+    for bad in ((), ("palette",), ("alpha",), ("alpha", "gray"), ("red", "green", "blue")):
+        with raises(ParameterError, coded("out_of_range", n_colours=len(bad), colours=list(bad))):
+            _require_one_band("a.tif", source(*bad))
+    band = np.ma.masked_array(np.array([[1, 2], [3, 4]], dtype=np.int16), mask=[[False, False], [False, True]])
+    file = SimpleNamespace(read=lambda number, masked: band if (number, masked) == (1, True) else None)
+    heights = _heights(SimpleNamespace(read=file.read, scales=(2.0, 9.0), offsets=(3.0, 9.0)))
+    np.testing.assert_array_equal(heights, [[5.0, 7.0], [9.0, np.nan]])
+
+    none = {"a": 1.0, "b": 0.0, "c": 0.0, "d": 0.0, "e": 1.0, "f": 0.0}
+    with raises(ParameterError, "missing"):
+        _require_north_up("a.tif", SimpleNamespace(**none), None)
+    _require_north_up("a.tif", SimpleNamespace(**none), cast("MapSystem", object()))
+    for key in "acef":
+        _require_north_up("a.tif", SimpleNamespace(**none | {key: 2.0}), None)
+    for key in "bd":
+        with raises(ParameterError, "wrong_kind"):
+            _require_north_up("a.tif", SimpleNamespace(**none | {key: 0.1}), None)
 
 
 @pytest.fixture(name="rasterio")

@@ -196,6 +196,9 @@ def test_places_that_were_rounded_are_even(tmp_path: Path) -> None:
     rows = [f"{x},{y},{float(x) + float(y)}" for x in ("0", "0.333", "0.667", "1") for y in ("0", "1")]
     terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
     np.testing.assert_allclose(terrain.x, np.arange(4.0) / 3.0, atol=1e-15)
+    rows = [f"{x},{y},{y}" for y, first in (("0", "0.001"), ("1", "0")) for x in (first, "1", "2", "3")]
+    terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
+    np.testing.assert_allclose(terrain.x, np.arange(4.0), atol=1e-15)
 
 
 def test_places_that_differ_by_rounding_are_one(tmp_path: Path) -> None:

@@ -163,6 +163,16 @@ def test_small_scatter_needs_three() -> None:
     assert needed(0.02, ratio=0.8, power=0.9, alpha=0.01) == 3
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [{"sd_log": 0.0}, {"sd_log": math.inf}, {"ratio": 0.0}, {"ratio": 1.0}, {"ratio": math.inf}, {"alpha": 0.0},
+     {"alpha": 0.8}, {"alpha": 0.9}, {"power": 1.0}, {"power": math.nan}],
+)  # fmt: skip
+def test_scatter_ratio_level_and_power_have_bounds(wrong: dict[str, float]) -> None:
+    with raises(ParameterError, "out_of_range"):
+        needed(**{"sd_log": 0.2, "ratio": 1.1, "power": 0.8, "alpha": 0.05, **wrong})
+
+
 def test_normal_counts_at_large_scatter() -> None:
     # n → 2 (z_0.975 + z_0.8)² (sd/ln ratio)², here far above a million
     expected = 2 * (1.959963984540054 + 0.8416212335729143) ** 2 * (50.0 / math.log(1.1)) ** 2
