@@ -47,6 +47,24 @@ class FilesWithExamples:
 def pytest_configure(config: pytest.Config) -> None:
     """Register what applies to src and docs, too."""
     config.pluginmanager.register(FilesWithExamples())
+    start_in_another_folder(config)
+
+
+def start_in_another_folder(config: pytest.Config) -> None:
+    """Let each worker begin the collection in another folder of tests, if all are collected.
+
+    In a new checkout pytest compiles every test module, which takes half of the collection. A worker reuses the
+    modules that another one has compiled; if all began in the same folder, each would compile all of them.
+    """
+    worker: dict[str, Any] | None = getattr(config, "workerinput", None)
+    if worker is None or config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+        return
+    tests = Path(__file__).parent
+    entries = {path.relative_to(tests).parts[0] for path in tests.rglob("test_*.py")}
+    places = [str(tests / entry) for entry in sorted(entries)]
+    places += [name for name in config.getini("testpaths") if name != tests.name]
+    first = len(places) * int(worker["workerid"].removeprefix("gw")) // int(worker["workercount"])
+    config.args = places[first:] + places[:first]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -61,7 +79,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.browser)
         if (isinstance(item, DoctestItem) and item.path.suffix == ".md") or fixtures & {"chromium", "served"}:
             waiting.add(item.path)
-    items.sort(key=lambda item: item.path not in waiting)
+    items.sort(key=lambda item: (item.path not in waiting, item.path))
 
 
 def pytest_collection_finish() -> None:

@@ -281,9 +281,10 @@ def tab_to(page: Page, place: Locator) -> None:
     """Go there by the tabulator; it is further than any page is long where it cannot be reached."""
     element = place.element_handle()
     for _ in range(150):
-        if element.evaluate("element => element === document.activeElement"):
+        is_focused, is_drawn = element.evaluate("each => [each === document.activeElement, each.isConnected]")
+        if is_focused:
             return
-        if not element.evaluate("element => element.isConnected"):  # drawn again
+        if not is_drawn:  # another element was drawn in its place
             element = place.element_handle()
         page.keyboard.press("Tab")
     raise AssertionError(f"{place} is not reached by the tabulator")
