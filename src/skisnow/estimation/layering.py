@@ -48,19 +48,6 @@ _LIMITS: Final = (-0.9, 20.0)
 """Of γ: below, the pressure would not grow with depth."""
 
 
-@dataclass(frozen=True, slots=True)
-class Layering:
-    """Estimates of m series with layering allowed; NaN where the fit found no solution.
-
-    load_exponent, load_exponent_error: g of V ~ F^g, 1 for even snow, and its standard error; κ = 2/g - 2.
-    degrees_of_freedom: degrees of freedom of the standard error.
-    """
-
-    load_exponent: FloatArray
-    load_exponent_error: FloatArray
-    degrees_of_freedom: FloatArray
-
-
 def layered(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> BoolArray:
     """Mask of the series whose load exponent differs clearly from 1; depth zeros may be off by some `SEATING_SD`."""
     enough = readings.sums(np.ones(readings.n)) >= FEWEST_READINGS
@@ -68,17 +55,19 @@ def layered(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncert
     flagged = np.zeros(readings.n_series, dtype=np.bool_)
     if not usable.any():
         return flagged
-    fit = layering(readings.of(usable), hardness[usable], uncertainty)
+    exponent, error, dof = layering(readings.of(usable), hardness[usable], uncertainty)
     with np.errstate(invalid="ignore"):
-        far = expanded_factor(fit.degrees_of_freedom, SHOWS) * fit.load_exponent_error
-        flagged[usable] = np.abs(fit.load_exponent - 1.0) > far
+        flagged[usable] = np.abs(exponent - 1.0) > expanded_factor(dof, SHOWS) * error
     return flagged
 
 
-def layering(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> Layering:
-    """Fit e = ê(V) + δ, ln V = ln V₇ + g ln(F/F₇), g = 1/(1 + κ/2), to each series by weighted Gauss-Newton.
+def layering(
+    readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Load exponent g of each series (1: even snow), its standard error and their degrees of freedom; NaN: no solution.
 
-    From ``hardness`` (N/m³), g = 1 and δ = 0. The variance of a reading is u_e² + (dê/dln V)² (s² + (g u_F/F)²) with s
+    Fits e = ê(V) + δ, ln V = ln V₇ + g ln(F/F₇), g = 1/(1 + κ/2), to each series by weighted Gauss-Newton, κ = 2/g - 2,
+    from ``hardness`` (N/m³), g = 1 and δ = 0. The variance of a reading is u_e² + (dê/dln V)² (s² + (g u_F/F)²) with s
     of the series itself. The prior of δ is normal about 0 with `SEATING_SD`.
     """
     series, largest = readings.series, np.log(readings.load[readings.largest])
@@ -114,7 +103,7 @@ def layering(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncer
         _, inverse = newton(b, scatter2)
         error = np.where(np.abs(step[:2]).max(axis=0) < 1e-4, np.sqrt(inverse[:, 1, 1]), np.nan)
         dof = _degrees_of_freedom(readings)
-        return Layering(b[1], error, np.where(dof >= 1.0, dof, np.nan))
+        return b[1], error, np.where(dof >= 1.0, dof, np.nan)
 
 
 def _gauss_newton_step(

@@ -117,14 +117,6 @@ def _require_even(name: str, places: FloatArray) -> None:
 IntArray: TypeAlias = npt.NDArray[np.intp]
 
 
-class Patched(NamedTuple):
-    """Values at places, and their slopes along both axes for each step of the grid."""
-
-    value: FloatArray
-    slope_x: FloatArray
-    slope_y: FloatArray
-
-
 class _Weights(NamedTuple):
     """Weights of the two ends of a cell along one axis: factors of their values and of their slopes."""
 
@@ -132,8 +124,8 @@ class _Weights(NamedTuple):
     slope: tuple[FloatArray, FloatArray]
 
 
-def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
-    """Interpolate values (n, m) of a grid at places u, v in cells, with slopes along both axes.
+def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Values of a grid (n, m) at places u, v in cells, and their slopes along both axes for each step of the grid.
 
     values: (n, m) at the places 0 to n - 1 and 0 to m - 1.
     u, v: places (k,) in steps of the grid, inside it.
@@ -143,8 +135,7 @@ def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Pat
 
     A parabola comes back: 1.5² = 2.25, with the slope 3.
 
-    >>> found = interpolate_patches(np.arange(4.0)[:, None] ** 2, np.array([1.5]), np.zeros(1))
-    >>> found.value, found.slope_x, found.slope_y
+    >>> interpolate_patches(np.arange(4.0)[:, None] ** 2, np.array([1.5]), np.zeros(1))
     (array([2.25]), array([3.]), array([0.]))
     """
     rows, along = _cell(u, values.shape[0])
@@ -161,7 +152,7 @@ def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Pat
         return total
 
     x, y = _hermite_weights(along), _hermite_weights(across)
-    return Patched(both(x, y), both(_hermite_slope(along), y), both(x, _hermite_slope(across)))
+    return both(x, y), both(_hermite_slope(along), y), both(x, _hermite_slope(across))
 
 
 def _cell(at: FloatArray, count: int) -> tuple[tuple[IntArray, IntArray], FloatArray]:

@@ -139,7 +139,11 @@ def resolve(scenario_input: ScenarioInput, sources: Sources) -> Resolution:
             )
         layer_snows = _read_snows(layer, values, files, sources)
         snows |= {(number, name): snow for name, snow in layer_snows.items()}
-        for quantity, names in _providers_by_quantity(layer, layer_snows).items():
+        given: dict[str, list[str]] = {}  # keys of the layer by the quantity that they give
+        for name, value in {**layer.values, **dict.fromkeys(layer_snows.keys() - layer.values.keys(), "")}.items():
+            for quantity in _quantities(name, value, layer_snows, layer):
+                given.setdefault(quantity, []).append(name)
+        for quantity, names in given.items():
             providers[quantity] = (number, _strongest(quantity, names, layer))
     snow_provider, measured = _named_snow(providers, snows)
     counting = {name for _, name in providers.values() if name not in NAMED_SNOWS} | {snow_provider[1]}
@@ -199,15 +203,6 @@ def _read_snows(
     if "snow.map_file" in layer.values:
         snows["snow.map_file"] = read_snow_map(files["snow.map_file"])
     return snows
-
-
-def _providers_by_quantity(layer: Layer, snows: Mapping[str, SnowProperties | SnowMap]) -> dict[str, list[str]]:
-    """Keys of a layer by the quantity that they give."""
-    providers: dict[str, list[str]] = {}
-    for name, value in {**layer.values, **dict.fromkeys(snows.keys() - layer.values.keys(), "")}.items():
-        for quantity in _quantities(name, value, snows, layer):
-            providers.setdefault(quantity, []).append(name)
-    return providers
 
 
 def _quantities(
