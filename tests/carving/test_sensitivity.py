@@ -364,6 +364,18 @@ def test_forces_at_places_grow_as_their_differences() -> None:
         assert (above - below) / (2.0 * step) == pytest.approx(growth, abs=2e-3 * np.abs(growth).max())
 
 
+def test_forces_between_stations_that_move_are_interpolated_between_their_own() -> None:
+    """A difference of numpy's interpolation, in which places and forces of all stations grow."""
+    found = carve(read_ski("carver"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    exact, name, step = derivatives(found), "ski.running_length_mm", 1e-6
+    moves = present(exact._parameter_derivatives(name).shape).place[::-1]
+    grows, rising = exact.force_growth(name)[::-1], exact._rising_stations
+    force, places = exact.at.solution.force_per_length[::-1], 0.3 * rising[:-1] + 0.7 * rising[1:]
+    above, below = (np.interp(places, rising + h * moves, force + h * grows) for h in (step, -step))
+    growth = exact.force_growth_at(name, places)
+    assert growth == pytest.approx((above - below) / (2.0 * step), abs=1e-5 * np.abs(growth).max())
+
+
 def test_a_neighbour_has_the_strength_of_its_parameter() -> None:
     """S_f that grows from 0.5 to 0.6 N/mm² alone changes the grip utilisation, by 5/6; a load changes it as well."""
     case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}

@@ -247,6 +247,9 @@ def test_too_few_resamples_are_rejected(make_campaign: MakeCampaign) -> None:
     rows = [("p1", "A", "ski", 0, load, depth) for load, depth in ((100, 1.0), (200, 2.1), (300, 2.9))]
     with raises(skisnow._support.errors.ParameterError, "out_of_range"):
         skisnow.analyse(make_campaign(rows), n_resamples=39)
+    for difference in (0.0, -0.1, math.inf):
+        with raises(skisnow._support.errors.ParameterError, "out_of_range"):
+            skisnow.analyse(make_campaign(rows), difference=difference)
 
 
 def test_an_analysis_shows_the_ends_of_its_interval_and_tells_its_steps(reference: Campaign) -> None:

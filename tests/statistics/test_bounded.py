@@ -32,6 +32,14 @@ class BoundedFit:
         self.at_bound = self.coefficients == 0.0
 
 
+def test_projected_columns_may_be_in_any_unit() -> None:
+    A, y = problem(1, 30, 3, 0.8)
+    units = np.array([1e-12, 1.0, 1e12])
+    plain, other = condensed(A, y).solved(), condensed(A, y).solved(np.diag(units))
+    assert (plain.rank, other.rank) == (3, 3)
+    np.testing.assert_allclose(other.coefficients * units, plain.coefficients, rtol=1e-9)
+
+
 @pytest.mark.parametrize("p", [1, 2, 3, 4, 6])
 @pytest.mark.parametrize("low", [0.8, -1.0, -10.0])
 def test_agrees_with_scipy(p: int, low: float) -> None:

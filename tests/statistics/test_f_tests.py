@@ -11,6 +11,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.statistics import expanded_factor, nested_f_test, welch_satterthwaite
 from skisnow.statistics.combined_uncertainty import percentile_interval, random_effects_mean, resampling_counts
 from skisnow.statistics.f_tests import _power
+from skisnow.statistics.shot_noise import shot_noise, windows_of
 
 from ..versions import EXACT_QUANTILES
 
@@ -179,3 +180,15 @@ def test_resamples_come_in_pieces_of_some_megabytes_and_are_those_of_one_draw() 
     for units, resamples in ((0, 3), (3, -1)):
         with raises(ParameterError, "out_of_range"):
             list(resampling_counts(units, resamples, np.random.default_rng(5)))
+
+
+def test_shot_noise_by_hand() -> None:
+    """Mean 2 and variance 1 of 3, 1, 3, 1; ten times the force; no noise where the mean is below 0 or all is equal."""
+    force = np.array([[3.0, 1.0, 3.0, 1.0], [30.0, 10.0, 30.0, 10.0], [-3.0, -1.0, -3.0, -1.0], [2.0, 2.0, 2.0, 2.0]])
+    found, deflection = shot_noise(force, 1e-3), 1.5e-3 * 3.2 / (3.2 + 2.4)
+    none = [np.nan, np.nan]
+    np.testing.assert_allclose(found.rupture_force, [0.75, 7.5, *none], rtol=1e-12)
+    np.testing.assert_allclose(found.deflection, [deflection, deflection, *none], rtol=1e-12)
+    np.testing.assert_allclose(found.intensity, [16.0 / 3.0 / deflection] * 2 + none, rtol=1e-12)
+    assert windows_of(np.arange(6.0), 3, 2).tolist() == [[0.0, 1.0, 2.0], [2.0, 3.0, 4.0]]
+    assert [windows_of(np.arange(6.0), size, 1).shape for size in (6, 7)] == [(1, 6), (0, 7)]
