@@ -293,15 +293,17 @@ def test_outputs_that_do_not_exist() -> None:
     assert missing == [[OUTPUTS[1], OUTPUTS[2], OUTPUTS[7]], [*OUTPUTS[:3], OUTPUTS[4]]]
 
 
-def test_a_rigid_wedge_in_closed_form() -> None:
+@pytest.mark.parametrize("degrees", [30.0, 45.0])
+def test_a_rigid_wedge_in_closed_form(degrees: float) -> None:
     """e = √(2 F tan ϑ/(H_V L)): half a per cent per per cent of the load, minus half of H_V; grip F tan ϑ/(S_f e L)."""
-    case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
+    angle = math.radians(degrees)
+    case: dict[str, Any] = {"edge_angle": angle, "load": 800.0, "unloading_ratio": 10.0}
     known = snow(0.2)
     found = carve(rigid_ski(), known, **case)
     names = ["load_N", "snow.H_V_N_per_mm3", "unloading_ratio", "edge_angle_deg"]
     depth = [each.relative for each in found.sensitivity("edge_depth_mm", names)]
     grip = [each.relative for each in found.sensitivity("grip_utilisation", names)]
-    steeper = math.radians(45.0) / (math.sin(math.radians(45.0)) * math.cos(math.radians(45.0)))
+    steeper = angle / (math.sin(angle) * math.cos(angle))
     assert depth == pytest.approx([0.5, -0.5, 0.0, steeper / 2.0], abs=1e-6)
     assert grip == pytest.approx([0.5, 0.5, 0.0, steeper / 2.0], abs=1e-6)
     # intervals of H_V and S_f: a fifth and a tenth of each; grip grows as √H_V / S_f

@@ -66,6 +66,12 @@ def test_each_number_has_its_default(section: str) -> None:
     assert numbers == pytest.approx(DEFAULTS[section], rel=1e-12)
 
 
+def test_each_switch_has_its_default() -> None:
+    switches = {name: key.default for name, key in SCENARIO_KEYS.items() if isinstance(key.default, bool)}
+    expected = {"snow.compaction_resistance": True, "skier.first_to_left": True}
+    assert switches == {**dict.fromkeys(("solver.fixed", "skier.carves"), False), **expected}
+
+
 def test_what_must_be_given() -> None:
     """Slope, snow, ski and the end of the run have further rules."""
     assert {name for name, key in SCENARIO_KEYS.items() if key.needed} == {
