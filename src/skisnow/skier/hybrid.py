@@ -47,7 +47,7 @@ class CarvedLine(RecedingLine):
 
     def __init__(self, line: Line, apexes: Sequence[tuple[float, float]], radius: float) -> None:
         super().__init__(line, apexes)
-        self._sidecut, self._share = radius, 1.0  # radius of a carve over the one in balance
+        self._sidecut, self._share = radius, 1.0  # radius of the present carve over the one in balance
         self._until = CARVES_TO * max(map(abs, self._course))  # course (rad) up to which a carve lasts
         self._side = 0.0  # of the carve: 1 to the left, -1 to the right, 0 for none
         self._left = 0.0  # side of the turn whose carve has ended
@@ -69,7 +69,7 @@ class CarvedLine(RecedingLine):
         if self._left * force[0] <= 0.0:
             self._left = 0.0
         if self._side and self._side * seen.course > self._until:
-            self._side, self._left = 0.0, self._side
+            self._side, self._left, self._share = 0.0, self._side, 1.0
         if self._side or self._left or abs(seen.slip) > BLADE or abs(force[0]) < LEAST_FORCE:
             return
         side = _side_of(force)
@@ -82,7 +82,7 @@ class CarvedLine(RecedingLine):
         return self._share * self._sidecut * math.sqrt(1.0 - sine**2)
 
     def _learn(self, seen: Seen, gravity: Gravity) -> None:
-        """Adjust the share to the radius of the path."""
+        """Adjust the share to the radius of the path of this carve."""
         rate = self._side * seen.turn_rate
         if abs(seen.slip) < BLADE and rate > 0.0:
             share = self._share * seen.speed / (rate * self._radius(seen.speed, gravity))

@@ -186,7 +186,7 @@ def course_names() -> tuple[str, ...]:
     Examples
     --------
     >>> course_names()
-    ('giant-slalom-20-gates', 'slalom-20-gates')
+    ('giant-slalom-20-gates', 'slalom-20-gates', 'wide-slalom-20-gates')
     """
     return tuple(sorted(entry.name.removesuffix(".csv") for entry in _FOLDER.iterdir() if entry.name.endswith(".csv")))
 
