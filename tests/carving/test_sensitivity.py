@@ -223,6 +223,12 @@ def test_values_of_an_edit_have_the_derivatives_of_differences() -> None:
     require_agreement({name: compared(exact, name) for name in VALUES[::4]}, share=0.8)
 
 
+def test_all_conditions_have_the_derivatives_of_differences() -> None:
+    case: dict[str, Any] = {"edge_angle": math.radians(35.0), "load": 800.0, "moment": 10.0, "unloading_ratio": 10.0}
+    exact = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), **case))
+    require_agreement({name: compared(exact, name) for name in CONDITIONS}, share=0.8)
+
+
 def test_a_row_that_is_almost_its_neighbour() -> None:
     """The curve of EI changes its form where two rows are equal: a step of the derivative must not cross that."""
     keys: dict[str, Any] = dict(read_ski("slalom").keys or {}) | {"EI_N_m2": [124.3, 202.8, 318.4, 318.2, 124.9]}

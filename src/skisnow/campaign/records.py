@@ -42,7 +42,7 @@ class PenetrationSeries(ShownFields):
 
 
 class _Readings(ShownFields):
-    """Base of readings of several experiments in arrays, one experiment after the other, with offsets `first`."""
+    """Base of readings of m experiments in arrays, one experiment after the other, with m + 1 offsets `first`."""
 
     __slots__ = ()
     first: IntArray

@@ -200,7 +200,7 @@ class ShapeGradient:
         return out
 
     def _by_stations(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """Derivatives by the stations of the ski's tables (rows,), through moved places and lengthened elements."""
+        """Derivatives of the output by the station of each row (rows,), through moved places and longer elements."""
         ski, half = model.ski, model.clamp_length / 2.0
         mesh, rows = _mesh(ski.station.tobytes(), model.clamp_length, elements), len(ski.station)
         shape = np.array([ski.width, ski.base_height])

@@ -87,7 +87,7 @@ def write_samples(options: argparse.Namespace) -> int:
 
 
 def add_ski(kinds: argparse._SubParsersAction[Parser]) -> None:
-    """Add ``skisnow new ski`` to the program."""
+    """Add ``skisnow new ski``, which writes a ski file from measurements, to the program."""
     ski = kinds.add_parser(
         "ski",
         help="a ski file of tables, bend and torsion tests, or of three widths alone",

@@ -221,7 +221,7 @@ def _estimated_offsets(options: argparse.Namespace) -> list[str]:
 
 
 def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | None) -> Track:
-    """A track in east, north and up, converted to the axes of a slope with an angle (rad); other tracks unchanged."""
+    """Track from east, north, up to a slope's axes (angle: rad) if options state the fall line; otherwise unchanged."""
     from ..track.slope_frame import in_slope_frame
 
     azimuth = options.fall_line_azimuth_deg

@@ -219,7 +219,7 @@ class SeriesFit:
         return float(np.abs(moved / scatter2 - 1.0).max())
 
     def _eliminate_hardness(self, line: _LinearisedModel) -> _Reduced:
-        """Normal equations of each series by ln H, g and δ, and those of g and δ after ln H is eliminated."""
+        """Normal equations of exponent g and depth zero δ of each series without ln H, and the terms that give ln H."""
         sums, share = self._readings.sums, self._share
         by_slope = line.weight * line.slope
         by_slope2 = by_slope * line.slope

@@ -130,7 +130,7 @@ def compare_with_published(
     angle_term: tuple[CampaignMean, CampaignMean],
     shear_density: CampaignMean,
 ) -> tuple[Comparison, ...]:
-    """Comparisons with published values: ranges, Federolf 2006, Eqns 11 and 14, Domine 2011; units as in the keys."""
+    """Compare means with published values; `shear_density`: snow density (kg/m³) at which laws of S_f are taken."""
     H_V, S_f = "H_V_N_per_mm3", "S_f_N_per_mm2"
     paper, paper_range = moessner_2013.SOURCE, Message("{source}, range", source=moessner_2013.SOURCE)
     rows = [

@@ -187,7 +187,7 @@ class _EffectsFit:
         self._variance = self._scatter2[self._of_cell] + error2
 
     def _spread(self, squares: FloatArray, free: FloatArray, error2: FloatArray, n_groups: int) -> None:
-        """Set σ² of each group and its degrees of freedom; pooled unless the groups clearly differ in scatter."""
+        """Set σ² of each group without measurement error, and its freedom; pooled unless groups' scatters differ."""
         degrees = max(round(float(free.sum()), 6), 0.0)
         self.degrees = degrees
         error_squares = float(free @ error2)

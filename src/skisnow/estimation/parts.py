@@ -47,7 +47,7 @@ class ModelTable(Shown):
     intervals: dict[Model, FloatArray]
 
     def _repr_facts(self) -> Facts:
-        """Title with the number of models, and a row with the rmse of each (N)."""
+        """Title with the number of models, and for each model a row with its rmse (N)."""
         rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
         return Facts(f"of {len(rows)} rows", rows)
 

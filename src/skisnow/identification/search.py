@@ -234,7 +234,7 @@ class Search:
         return replace(state, jacobian=jacobian)
 
     def _beside(self, place: FloatArray, j: int, step: float, *, is_pair: bool) -> FloatArray:
-        """Place with parameter j changed by a step, inside the bounds; a single step that leaves them is reversed."""
+        """Place with parameter j moved by a step, clipped to the bounds; a single step across one is reversed first."""
         end = place.copy()
         if not is_pair and not self.lower[j] <= place[j] + step <= self.upper[j]:
             step = -step

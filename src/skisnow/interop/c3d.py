@@ -30,7 +30,7 @@ _LAST_COUNTED: Final = 65_535
 
 @dataclass(frozen=True, slots=True)
 class C3dContent:
-    """Points and parameters in the bytes of a C3D file.
+    """Points and parameters read from the bytes of a C3D file.
 
     parameters: values by group and name, both in capitals.
     rate: frames a second (Hz).

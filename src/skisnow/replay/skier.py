@@ -73,7 +73,7 @@ def _hip_position(pelvis: FloatArray, left: FloatArray, side: int, height: float
 
 
 def _within_reach(pelvis: FloatArray, ankle: FloatArray, left: FloatArray, height: float) -> FloatArray:
-    """Pelvis moved towards an ankle that is farther from its hip than the length of a leg."""
+    """Pelvis (n, 3) moved towards each ankle that is farther from its hip than a leg; `height`: of the body (m)."""
     longest = STRETCHED * (SHANK.length + THIGH.length) * height
     for side in (0, 1, 0, 1):
         way = ankle[:, side] - _hip_position(pelvis, left, side, height)

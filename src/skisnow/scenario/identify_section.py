@@ -48,7 +48,7 @@ CLOCKS: Final = ("start", "free")
 
 
 def require_known(section: Mapping[str, Any]) -> None:
-    """Reject keys without effect: a misspelt one, or one that belongs into another section."""
+    """Reject unknown keys of [identify], keys that cannot be identified, and impossible clocks or tables."""
     given_parameters(section)
     clock = section.get("clock", "start")
     if clock not in CLOCKS:

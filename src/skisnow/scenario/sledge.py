@@ -238,7 +238,7 @@ class Shear(Declared):
             )
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:
-        """Shear law in snow with this S_f (N/m²); None for a constant S_f."""
+        """Shear law by angle, density or machining in snow with this S_f (N/m²); None for a constant S_f."""
         with without_range_warnings():  # a scenario has separate warnings about unmeasured ranges
             if self.law == "by-angle":
                 return AngleShear(flat_shear_stress=failure_shear_stress, relative_decrease=self.relative_decrease)

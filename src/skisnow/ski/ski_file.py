@@ -211,7 +211,7 @@ def _plain(value: float) -> float:
 
 @dataclass(slots=True)
 class Sources:
-    """Cache of skis and snows by the words that name them; each file is read once.
+    """Cache of skis with their reader's warnings, and of snows, by the words that name them; each file is read once.
 
     folder: where relative paths start; None: the current folder.
     """

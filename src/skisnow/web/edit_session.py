@@ -57,7 +57,7 @@ class QuickResults:
 
 
 class EditSession:
-    """Access of one page to the journal of an entered campaign; `refresh` reads the entries of other pages."""
+    """Reads and writes the journal of an entered campaign for one page; `refresh` reads the entries of other pages."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.id = id_

@@ -132,7 +132,7 @@ class SkiEditInput:
 
 
 def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> tuple[Ski, str]:
-    """Ski of an edit, renamed if a name is given, and warnings of the reader; ParameterError if it is not valid."""
+    """Ski of an edit's texts and factors, renamed by `name`, and the reader's warnings; ParameterError if not valid."""
     ski, warned = ski_of_texts(edit.text, edit.table)
     factors = {
         key: typed_number(Message("the factor of {factors}", factors=FACTORS[key]), text)

@@ -332,7 +332,7 @@ def _filled(sheet: Sheet, row: int, columns: Sequence[int]) -> list[int]:
 
 @dataclass(frozen=True, slots=True)
 class _Title:
-    """A row of titles above series, as a column: heading, unit, and by series its value with the cell it is from."""
+    """A column made of titles above series: heading, unit, and by a series' own columns its value and its cell."""
 
     heading: str
     unit: str

@@ -42,7 +42,7 @@ class Collector(Protocol):
     """Collects the cells of one column, several rows at a time."""
 
     def take(self, cells: Sequence[str], rows: Rows) -> None:
-        """Convert and store the cells of some rows; errors are added to the problems of the rows."""
+        """Convert and store the column's cells in some rows; errors are added to the problems of the rows."""
 
 
 @dataclass(frozen=True, slots=True)

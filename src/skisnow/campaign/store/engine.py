@@ -216,7 +216,7 @@ def _revision(connection: Connection, path: Path) -> str | None:
 
 
 def _is_outdated(engine: Engine, path: Path) -> bool:
-    """True if the store needs a migration; StoreError as `_needs_migration`."""
+    """True if the store needs a migration; StoreError if it is damaged, of another program or of an unknown schema."""
     with reading(engine) as connection:
         return needs_migration(_revision(connection, path), path)
 

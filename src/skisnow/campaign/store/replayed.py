@@ -222,7 +222,7 @@ def _row_cells(at: str, cells: Mapping[str, str], columns: Sequence[str]) -> lis
 
 
 def _applied_corrections(tests: Sequence[ReplayedTest]) -> Iterator[AppliedCorrection]:
-    """Corrections and cancellations of cells in the order of the table's lines."""
+    """Corrections of cells, and of the status of cancelled tests, in the order of their lines in the exported table."""
     line = 1  # the header
     for test in tests:
         if test.cancelling is not None:

@@ -42,7 +42,7 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
 
 
 def _database_damage(connection: Connection) -> Iterator[Finding]:
-    """Findings of the checks of integrity and foreign keys, by SQLite itself for a file."""
+    """Findings of SQLite's own integrity and foreign-key checks; on a server, of a search for broken references."""
     if not is_file(connection):
         for table, parent, number in broken_references(connection):
             rows = f"{number} row{'' if number == 1 else 's'} of table {table}"

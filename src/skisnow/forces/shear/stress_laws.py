@@ -63,6 +63,7 @@ class ConstantShear(ShearLaw):
     failure_shear_stress: Annotated[float, ABOVE_ZERO, FAILURE_SHEAR_STRESS]
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Shear stress S_f (N/m²) at each place, whatever depth and angle."""
         return np.full(depth.shape, self.failure_shear_stress)
 
 
@@ -120,6 +121,7 @@ class AngleShear(ShearLaw):
         return cls(flat_shear_stress=flat * N_PER_MM2, relative_decrease=decrease)
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Shear stress (N/m²), which falls linearly with the edge angle (rad); the depth has no effect."""
         return self.flat_shear_stress * (1.0 - self.relative_decrease * angle)
 
 
@@ -180,6 +182,7 @@ class DensityShear(ShearLaw):
         return float(moessner_2013.failure_shear_stress_from_density(self.snow_density))
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Shear stress S_f (N/m²) at each place, whatever depth and angle."""
         return np.full(depth.shape, self.failure_shear_stress)
 
 
@@ -234,4 +237,5 @@ class NaturalDensityShear(ShearLaw):
         return float(domine_2011.failure_shear_stress_from_density(self.snow_density))
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Shear stress S_f (N/m²) at each place, whatever depth and angle."""
         return np.full(depth.shape, self.failure_shear_stress)

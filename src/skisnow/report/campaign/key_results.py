@@ -95,7 +95,7 @@ def _displacement_sentence(data: ReportData) -> Markup | None:
 
 
 def _sentence_by_relation(data: ReportData) -> Markup | None:
-    """Sentence with density, hardness and S_f of each site by published relations; None with plate tests."""
+    """Sentence with each site's density, and its hardness and S_f by relations; None if there are plate tests."""
     rows = data.results.get("published_relations")
     if not rows:
         return None

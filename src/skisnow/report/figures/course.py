@@ -88,7 +88,7 @@ def _draw_gates(axes: Axes, result: CourseResult) -> None:
 
 
 def _set_axes(axes: Axes, points: FloatArray, words: str) -> None:
-    """Set limits and labels of a plan view; the scales differ if the course is long and narrow."""
+    """Set limits and labels (`words` at x) of a plan view; the scales differ if the course is long and narrow."""
     low, high = points.min(axis=0), points.max(axis=0)
     size = np.maximum(high - low, 1.0)
     margin = np.maximum(_MARGIN * size, 1.0)

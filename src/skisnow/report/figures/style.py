@@ -216,7 +216,7 @@ def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
 
 
 def label_time(axes: Axes, time: FloatArray) -> None:
-    """Label an axis of time, and limit it to the times (s)."""
+    """Label the horizontal axis as time, and limit it to the first and last of the times (s)."""
     axes.set_xlim(float(time[0]), float(time[-1]))
     axes.set_xlabel(Message("time (s)"))
 

@@ -38,7 +38,7 @@ PRESSURE_LAWS: Final = {
 
 
 def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) -> tuple[float, float]:
-    """Convert A and B to H_V = 2 A / cos²ϑ and S_f = B / sin²ϑ, in the same units; ϑ in rad, 0 < ϑ < π/2.
+    """Convert p = A e + B to H_V = 2 A / cos²ϑ and S_f = B / sin²ϑ, in the same units; ϑ in rad, 0 < ϑ < π/2.
 
     >>> H_V, S_f = converted(0.034, 0.35, math.radians(55))
     >>> round(H_V, 2), round(S_f, 2)

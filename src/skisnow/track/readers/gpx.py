@@ -108,7 +108,7 @@ class _Reader:
         raise track_error("unreadable_file", self._name, allowed, value=value)
 
     def _key(self) -> str | None:
-        """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
+        """Key of the open element's text, if it is one of a point's texts or a speed in its extensions; else None."""
         size = len(self._point)
         path = self._path[size:]
         if not path or tuple(self._path[:size]) != self._point:

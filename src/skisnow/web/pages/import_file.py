@@ -293,7 +293,7 @@ def _choice_words(text: str) -> str:
 
 
 def _show_rows(table: ImportedTable) -> None:
-    """Add a table with the first rows of an imported table as they are stored."""
+    """Add to the page a table of the first rows that an import will store, with long numbers cut to five digits."""
     present = dict.fromkeys(name for row in table.rows[:_SHOWN_ROWS] for name in row.cells)
     numbers = number_columns(table.form)
     names = sorted(present, key=lambda name: name in {"time", *FROM_NOTES})  # measured numbers first
