@@ -257,3 +257,12 @@ def test_a_run_from_above(radius: float, duration: float, language: str) -> None
         local_axes(figure)
         letter_panels(figure)
         assert over_one_another(figure) == []
+
+
+def test_time_marks_are_as_far_apart_as_their_label_says() -> None:
+    with journal_style(), in_language("en"):
+        run = circle_run(radius=12.0, duration=20.0)
+        figure = run_track(run)
+        expected = [np.interp(np.arange(0.0, 21.0, 2.0), run.time, run.place[:, k]) for k in (0, 1)]
+        np.testing.assert_allclose(figure.axes[0].lines[2].get_data(), expected, atol=1e-9)
+        assert figure.legends[0].get_texts()[2].get_text().startswith("every 2 s")

@@ -53,7 +53,7 @@ def run_track(run: Run) -> Figure:
     draw_plan(figure.add_subplot(grid[0, :]), run, limits)
     _draw_groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
     handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
-    mark = Message("each second; square: end")
+    mark = Message("every {time:g} s; square: end", time=_mark_interval(run))
     handles.append(Line2D([], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label=mark))
     legend_below(figure, handles)
     return figure
@@ -102,10 +102,14 @@ def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -
     plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
 
 
+def _mark_interval(run: Run) -> int:
+    """Whole seconds between two time marks."""
+    return max(1, math.ceil(run.simulated_s / _MOST_MARKS))
+
+
 def _draw_time_marks(axes: Axes, run: Run, mm_per_metre: float) -> None:
-    """Draw a mark each second, with its time unless the text before is too near; the end with its outcome."""
-    every = max(1, math.ceil(run.simulated_s / _MOST_MARKS))
-    marks = np.arange(0.0, run.simulated_s + 1e-9, every)
+    """Draw marks at equal times, each with its time unless the text before is too near; the end with its outcome."""
+    marks = np.arange(0.0, run.simulated_s + 1e-9, _mark_interval(run))
     x, y = (np.interp(marks, run.time, run.place[:, k]) for k in (0, 1))
     axes.plot(x, y, linestyle="none", marker="o", markersize=2.6, color=BLACK, zorder=4)
     aside = np.interp(marks, run.time, np.unwrap(run.heading))
