@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+import skisnow
 from skisnow import load_scenario, simulate
 from skisnow.campaign.store import Journals, Store, campaign_in_memory, replay_journal
 from skisnow.estimation.result_rows import experiment_hardness
@@ -24,6 +25,7 @@ FILE_VALUE = 0.2012345
 """H_V in N/mm³; close to that of the scenario below, so that the run is sound."""
 SCENARIO = "carved-46m"
 DEPTH = 3
+PACKAGE = f"{Path(skisnow.__file__).parent}/"
 
 
 def holds(value: object, numbers: tuple[float, ...], depth: int = DEPTH) -> bool:
@@ -57,9 +59,9 @@ def files_passed(action: Any, numbers: tuple[float, ...]) -> dict[str, list[str]
 
     def trace(frame: FrameType, event: str, _argument: object) -> None:
         name = frame.f_code.co_filename
-        if event not in ("call", "return") or "/skisnow/" not in name:
+        if event not in ("call", "return") or not name.startswith(PACKAGE):
             return
-        short = name.rpartition("/skisnow/")[2]
+        short = name.removeprefix(PACKAGE)
         function = frame.f_code.co_name
         if function in passed.get(short, ()):
             return

@@ -263,6 +263,6 @@ def test_time_marks_are_as_far_apart_as_their_label_says() -> None:
     with journal_style(), in_language("en"):
         run = circle_run(radius=12.0, duration=20.0)
         figure = run_track(run)
-        expected = [np.interp(np.arange(0.0, 21.0, 2.0), run.time, run.place[:, k]) for k in (0, 1)]
-        np.testing.assert_allclose(figure.axes[0].lines[2].get_data(), expected, atol=1e-9)
+        expected = np.transpose([np.interp(np.arange(0.0, 21.0, 2.0), run.time, run.place[:, k]) for k in (0, 1)])
+        np.testing.assert_allclose(np.asarray(figure.axes[0].lines[2].get_xydata()), expected, atol=1e-9)
         assert figure.legends[0].get_texts()[2].get_text().startswith("every 2 s")
