@@ -16,10 +16,11 @@ from typing import Any, TypeAlias
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..campaign.records import PenetrationTests
 from ..snow.published import hand_hardness
 from ..snow.published.moessner_2013 import SNOW_DENSITY_RANGE, failure_shear_stress_from_density
 from .analysis import Analysis
-from .parts import campaign_notes
+from .parts import PenetrationAnalysis, campaign_notes
 from .regressions import Regression
 from .result_rows import (
     Columns,
@@ -175,7 +176,7 @@ def _penetration_json(analysis: Analysis) -> Json:
             "unloading": [],
             "growing_hardness": {"experiments": [], "sites": []},
         }
-    model, fitted, growing, factor = estimates.model, estimates.fitted, estimates.growing, estimates.volume_factor
+    model, fitted, factor = estimates.model, estimates.fitted, estimates.volume_factor
     seating: Columns = {
         "experiment": tests.experiment,
         "depth_offset_mm": model.offset / MM,
@@ -188,33 +189,6 @@ def _penetration_json(analysis: Analysis) -> Json:
         "H_V_interval_N_per_mm3": model.hardness_interval / N_PER_MM3,
         "relative_scatter": fitted.scatter,
     }
-    growth: Columns = {
-        "experiment": tests.experiment,
-        "H_0_N_per_mm3": growing.surface_hardness / N_PER_MM3,
-        "growth_percent": 100.0 * growing.growth,
-        "growth_interval_percent": 100.0 * growing.growth_interval,
-    }
-    growth_of_sites = [
-        {
-            "site": row.site,
-            "n": row.n,
-            "growth_percent": 100.0 * row.value,
-            "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
-        }
-        for row in estimates.site_growth
-    ]
-    unloading_of_sites = [
-        {
-            "site": row.site,
-            "n": row.n,
-            "unloading_ratio": row.ratio,
-            "unloading_ratio_interval": [row.low, row.high],
-            "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
-            "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
-            "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
-        }
-        for row in estimates.site_unloading
-    ]
     return {
         "experiments": penetration_experiments(tests, estimates.screened, estimates),
         "models": model_rows(estimates.table),
@@ -233,9 +207,46 @@ def _penetration_json(analysis: Analysis) -> Json:
         "campaign_model": campaign_model_results(model, estimates.unloading),
         "seating": column_rows(seating),
         "errors_in_depth": {"models": model_rows(estimates.errors_in_depth), "experiments": column_rows(hardness)},
-        "unloading": unloading_of_sites,
-        "growing_hardness": {"experiments": column_rows(growth), "sites": growth_of_sites},
+        "unloading": _unloading_of_sites(estimates),
+        "growing_hardness": _growing_hardness(tests, estimates),
     }
+
+
+def _unloading_of_sites(estimates: PenetrationAnalysis) -> list[Json]:
+    """JSON of each site's unloading ratio k_u/H_V and k_u (N/mm³) with intervals."""
+    return [
+        {
+            "site": row.site,
+            "n": row.n,
+            "unloading_ratio": row.ratio,
+            "unloading_ratio_interval": [row.low, row.high],
+            "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
+            "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
+            "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
+        }
+        for row in estimates.site_unloading
+    ]
+
+
+def _growing_hardness(tests: PenetrationTests, estimates: PenetrationAnalysis) -> Json:
+    """JSON of the hardness at the surface and its growth with depth, of each experiment and of the sites' means."""
+    growing = estimates.growing
+    growth: Columns = {
+        "experiment": tests.experiment,
+        "H_0_N_per_mm3": growing.surface_hardness / N_PER_MM3,
+        "growth_percent": 100.0 * growing.growth,
+        "growth_interval_percent": 100.0 * growing.growth_interval,
+    }
+    sites = [
+        {
+            "site": row.site,
+            "n": row.n,
+            "growth_percent": 100.0 * row.value,
+            "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
+        }
+        for row in estimates.site_growth
+    ]
+    return {"experiments": column_rows(growth), "sites": sites}
 
 
 def _shear_json(analysis: Analysis) -> Json:

@@ -38,7 +38,7 @@ class StudyState(Enum):
 
 
 def study_state(study: Study) -> StudyState:
-    """State of a study's table: complete, absent, or of another study; ParameterError if the file is no such table."""
+    """State of a study's table: complete, absent, or of another study; ParameterError if it is not one."""
     return table_state(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
 
 

@@ -92,7 +92,7 @@ class Access:
         object.__setattr__(self, "_names", _LOOPBACK_NAMES | names)
 
     def allows_host(self, host: str) -> bool:
-        """True for a name of this machine; if others can reach it, any IP address too. ValueError: it is no host."""
+        """True for a name of this machine; if others can reach it, also any IP address. ValueError if not a host."""
         name = (urlsplit(f"//{host}").hostname or "").lower()
         if name in self._names:
             return True

@@ -176,7 +176,7 @@ UNDESCRIBED: Final = Message(
 
 
 def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
-    """Store a campaign of uploaded files, numbered in a folder; returns its id. ParameterError: it is no campaign."""
+    """Store a campaign of uploaded files, numbered in a folder; returns its id. ParameterError if it is not valid."""
     unpacking = Unpacking(Path(place) / "campaign", limits)
     unpacking.folder.mkdir()
     for number, name in enumerate(names):

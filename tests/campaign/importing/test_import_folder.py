@@ -10,7 +10,7 @@ from skisnow.campaign.importing.answers import Answers, read_template, save_temp
 from skisnow.campaign.importing.folder import undo_import, write_import
 from skisnow.campaign.importing.proposal import propose
 
-from .test_import import FILE, bytes_of, everyday, require_right
+from .layouts import FILE, bytes_of, everyday, require_right
 
 
 def test_written_campaign_repeats_the_mapping_and_is_undone(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from skisnow.campaign.importing.sheets import read_sheets
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
 
-from .test_import import FILE, G, bytes_of, hardness, issues
+from .layouts import FILE, G, bytes_of, hardness, issues
 
 PAIR = ["Last [kg]", "Tiefe [mm]"]
 PAIRS: list[list[Any]] = [PAIR * 2, [10, 0.63, 10, 0.72], [50, 1.41, 50, 1.59]]

@@ -20,7 +20,7 @@ from skisnow.campaign.importing.proposal import Proposal, propose
 from skisnow.campaign.importing.sections import _named_value
 from skisnow.campaign.importing.sheets import column_letters, is_plain_number
 
-from .test_import import issues
+from .layouts import issues
 
 
 def notes(*texts: str) -> list[Note]:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
-from skisnow._support.processes.batch import Pool, require_executor, run_batch
+from skisnow._support.processes.batch import Pool, run_batch
 from skisnow._support.processes.kept_rows import KeptRows, json_text
 from skisnow.identification import identify
 from tests.coded import raises
@@ -122,8 +122,3 @@ def test_futures_that_an_executor_cancels_are_reported() -> None:
 def test_an_invalid_executor_is_rejected(executor: Any) -> None:
     with raises(ParameterError, "unknown_executor", executor=executor):
         run_batch(POINTS, dict, executor=executor)
-
-
-@pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
-def test_what_is_on_this_computer_is_an_executor(executor: Any) -> None:
-    require_executor(executor)

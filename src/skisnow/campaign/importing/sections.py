@@ -234,7 +234,7 @@ def _make_section(
     while end > start:
         last = [text for text in _row_texts(sheet, end - 1, columns) if text]
         if len(last) > 1 or any(map(is_plain_number, last)):
-            break  # a row of data; a blank row, and a title or note alone, belong to the next table
+            break  # a row of data; a blank row, and a row of a title or note only, belong to the next table
         end -= 1
     used = [
         place

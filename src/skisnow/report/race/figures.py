@@ -111,7 +111,7 @@ def gap_drawings(gaps: Sequence[GateGap], names: tuple[str, str]) -> Iterator[Dr
 
 
 def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> Message:
-    """Sentence on the last gate that both crossed: which run is ahead there and by how much; or that there is none."""
+    """Sentence on who is ahead by how much at the last gate that both runs crossed, or that they crossed none."""
     last = next((gap for gap in reversed(gaps) if gap.gap_s is not None), None)
     if last is None:
         return Message("No gate was crossed by both.")

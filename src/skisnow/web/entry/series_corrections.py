@@ -63,7 +63,7 @@ class SeriesCorrections:
             self.ask(focus=False, is_said=False)
 
     def ask(self, *, focus: bool, is_said: bool = True) -> bool:
-        """Ask one reason for all changed readings; False if one is no depth. `is_said`: also in the status line."""
+        """Ask one reason for all changed readings; False if one is not a depth. `is_said`: also in the status line."""
         changed = self._changed()
         cells = {
             step: checked_fields(self._view.form, {self._column: reading.depth}) for step, reading in changed.items()

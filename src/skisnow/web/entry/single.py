@@ -53,7 +53,7 @@ class SingleForm:
         return True
 
     def show(self, name: str, *, row: str = "") -> None:
-        """Show a row of a test, by the number of its entry or the first; the form of a new test if there is none."""
+        """Show a row of a test, by the number of its entry or the first; without a row: the form of a new test."""
         test = self._view.test(name)
         if not test.rows:
             self.begin()
