@@ -5,6 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy import stats
 from tests.coded import raises
 
 from skisnow._support.arrays import FloatArray
@@ -155,6 +156,18 @@ def test_numbers_of_tests_against_statsmodels(sd_log: float, ratio: float, power
 
     assert reached(n) >= power
     assert reached(n - 1) < power
+
+
+def test_a_level_at_which_scipy_has_no_chance_of_the_wrong_sign() -> None:
+    """SciPy gives NaN for it with 64 in each group, of which the search took 64 as enough."""
+    effect = 4.2 / math.sqrt(64 / 2.0)
+    n = needed(math.log(1.1) / effect, ratio=1.1, power=0.8, alpha=1e-5)
+
+    def reached(size: int) -> float:
+        critical = stats.t.isf(0.5e-5, 2 * size - 2)
+        return float(stats.nct.sf(critical, 2 * size - 2, effect * math.sqrt(size / 2.0)))
+
+    assert reached(n) >= 0.8 > reached(n - 1)
 
 
 def test_small_scatter_needs_three() -> None:

@@ -134,8 +134,9 @@ def test_coverage(spread: float, least: float, most: float) -> None:
 
 @pytest.mark.parametrize(
     ("n", "alpha", "shift"),
-    [(2, 1e-3, 31.0), (2, 0.05, 8.2), (5, 0.05, 3.0), (5, 0.05, 40.1), (30, 1e-3, 5.3), (100, 0.05, 38.8)],
-)
+    [(2, 1e-3, 31.0), (2, 0.05, 8.2), (5, 0.05, 3.0), (5, 0.05, 40.1), (30, 1e-3, 5.3), (100, 0.05, 38.8),
+     (30, 1e-6, 4.1), (30, 1e-5, 4.4), (1000, 1e-9, 3.2), (10**6, 1e-4, 3.0)],
+)  # fmt: skip
 def test_power_is_that_of_an_integral_also_where_scipy_has_no_number(n: int, alpha: float, shift: float) -> None:
     """The normal power for each scatter that is drawn, over the distribution of drawn scatters."""
     freedom = 2.0 * n - 2.0
