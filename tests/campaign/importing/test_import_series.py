@@ -38,6 +38,10 @@ RIGHT = [
     ([[None, None, "Last"], ["Versuch", "Kantwinkel [°]", "[kg]", "Tiefe [mm]"], *ROWS], {}),
     ([["Versuch", "Kantwinkel", "Last", "Tiefe"], [None, None, "in kg", "in mm"], *ROWS],
         {"unit": {"Kantwinkel": "°"}}),
+    # a row of units with words
+    ([["Versuch", "Kantwinkel", "Last", "Tiefe"], ["Nr.", "Grad (°)", "Masse [kg]", "[mm]"], *ROWS], {}),
+    ([["Versuch", "Kant-", "Last", "Tiefe"], ["Nr.", "winkel", None, None], [None, "°", "Masse [kg]", "mm"],
+        *ROWS], {}),
 ]  # fmt: skip
 ASKED = [
     [["Hang oben"], *PAIRS],
@@ -52,6 +56,7 @@ ASKED = [
     [[None, None, "Auflast", "Kegel"], ["Versuch", "Kantwinkel [°]", "Last [kg]", "Tiefe [mm]"], *ROWS],
     [["Versuch", "Kantwinkel", "Last", None, "Tiefe"], ["Nr.", "°", "Masse [kg]", "Kraft [N]", "mm"],
         ["1", 30, 10, 98.1, 0.63]],
+    [["Versuch", "Kantwinkel", "Last", "Tiefe"], ["Nr.", "°", "Masse [lb]", "mm"], *ROWS],
     [["Versuch", "Kantwinkel", "Last", "Tiefe"], ["A", "30°", "100 N", "0,5 mm"], ["A", "30°", "200 N", "0,9 mm"]],
 ]  # fmt: skip
 
@@ -90,6 +95,8 @@ SECTIONS: list[list[str]] = [
     ["Hang oben:1 2 6 (0, 1, 2, 3) Test, Edge angle [°], Load, Penetration depth [mm] | no., , kg,  | range(0, 0)"],
     ["Hang oben:1 2 6 (0, 1, 2, 3) Versuch, Kantwinkel [°], Last, Tiefe [mm] | , , kg,  | range(0, 0)"],
     ["Hang oben:1 2 6 (0, 1, 2, 3) Versuch, Kantwinkel, Last in kg, Tiefe in mm | , , ,  | range(0, 0)"],
+    ["Hang oben:1 2 6 (0, 1, 2, 3) Versuch, Kantwinkel, Last, Tiefe | Nr., °, kg, mm | range(0, 0)"],
+    ["Hang oben:1 3 7 (0, 1, 2, 3) Versuch, Kantwinkel, Last, Tiefe | Nr., °, kg, mm | range(0, 0)"],
 ]
 """Of each right case: heading row, first data row, row behind the last, columns, headings, units, rows of titles."""
 ISSUES: list[list[str]] = [
@@ -116,6 +123,7 @@ ISSUES: list[list[str]] = [
     ["table Hang oben:1=penetration 5 Hang oben:1 None Versuch, Kantwinkel [°], Last [kg], Nachtiefe [mm]"],
     ["ignore Hang oben!1= 0 Hang oben 1 Auflast: Kegel"],
     ["table Hang oben:1=penetration 5 Hang oben:1 None Versuch, Kantwinkel, Last"],
+    ["unit penetration.Last= 5 Hang oben:1 None Masse [lb]"],
     [
         "unit penetration.Kantwinkel= 2 Hang oben:1 None 30°",
         "unit penetration.Last= 5 Hang oben:1 None 100 N",

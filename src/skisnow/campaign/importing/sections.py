@@ -16,6 +16,8 @@ from .answers import NONE, Answers
 from .sheets import FROM_NOTES, KINDS, Sheet, is_plain_number
 
 _FEWEST_HEADINGS: Final = 2
+_IN_BRACKETS: Final = re.compile(r"[^\d\[(]+[\[(]([^\])]*)[\])]")
+"""A unit in brackets after words, such as "Masse [kg]"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +132,14 @@ def _is_unit(text: str) -> bool:
     return plain.casefold() in NO_UNIT or bool(known_unit(plain))
 
 
+def _unit_of_cell(text: str) -> str:
+    """Unit that a cell of a row of units states, without brackets, and without words before them."""
+    match = _IN_BRACKETS.fullmatch(text)
+    if match:
+        return match[1].strip() if known_unit(match[1]) else text
+    return text.strip("[]()").strip()
+
+
 def _joined_heading(top: str, below: str) -> str:
     """Heading of two cells, one below the other, if both are needed for it; otherwise ""."""
     if not _is_part(below):
@@ -222,14 +232,15 @@ def _make_section(
     if parts or rows_of_headings > 1:
         headings = tuple(new or text for new, text in zip(joined, top, strict=True))
         below = ["" if new else part for new, part in zip(joined, below, strict=True)]
-        third = [sheet.cell(row + 2, column) for column in columns]
-        if all(map(_is_unit, third)) and any(known_unit(cell.strip("[]()")) for cell in third):
+        third = [_unit_of_cell(sheet.cell(row + 2, column)) for column in columns]
+        if all(map(_is_unit, third)) and any(map(known_unit, third)):
             below = [cell or part for cell, part in zip(third, below, strict=True)]
             start = row + 2
-    texts = [cell.strip("[]()").strip() for cell in below if cell]
+    below = [_unit_of_cell(cell) for cell in below]
+    texts = [text for text in below if text]
     has_units = any(map(known_unit, texts)) or len(texts) >= _FEWEST_HEADINGS
     if parts or rows_of_headings > 1 or (has_units and not any(map(is_plain_number, texts))):
-        units, start = tuple(cell.strip("[]()").strip() for cell in below), start + 1
+        units, start = tuple(below), start + 1
     end = min(later, default=len(sheet.rows))
     while end > start:
         last = [text for text in _row_texts(sheet, end - 1, columns) if text]
