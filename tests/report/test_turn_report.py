@@ -12,7 +12,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.report.figures.style import journal_style
-from skisnow.report.track.figures import named_radii, switch_times, track_along, track_map
+from skisnow.report.track.figures import coloured_map, named_radii, switch_times, track_along, track_map
 from skisnow.report.track.report import write_track_report
 from skisnow.report.track.summary import track_gpx, track_text, track_verdict, turn_rows
 from skisnow.report.turn.chain import (
@@ -269,6 +269,18 @@ def test_map_has_equal_scales_and_its_turns_and_radius_axis_is_even_in_curvature
         assert text == "straight" or abs(place) == pytest.approx(1.0 / float(text))
     drawn = np.asarray(axes.lines[0].get_ydata(), dtype=float)
     assert np.nanmax(drawn) == pytest.approx(1.0 / 12.0, rel=0.15)
+
+
+def test_a_constant_speed_has_one_colour_and_a_changing_speed_all() -> None:
+    angle = np.linspace(0.0, math.pi, 81) ** 1.5
+    changing = np.stack([16.0 * np.sin(angle), 16.0 * (1.0 - np.cos(angle))], axis=1)
+    with journal_style():
+        spread = [
+            np.ptp(line.to_rgba(line.get_array())[:, 1])
+            for place in (circle(16.0, 12.0), changing)
+            for line in coloured_map(track_summary(track(place)), "speed").axes[0].collections
+        ]
+    assert spread == pytest.approx([0.0, 0.9], abs=0.05)
 
 
 @pytest.mark.parametrize("reach", [0.5, 0.1, 0.03, 0.001])

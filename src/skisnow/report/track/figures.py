@@ -34,6 +34,7 @@ _RADIUS_LABEL: Final = Message("turn radius (m),\nleft above, right below")
 _MARGIN: Final = 0.04
 _LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
 _FRAME_MM: Final = 26.0
+_SPEED_RANGE: Final = 1.0  # minimum range (m/s) of the colours, so that a constant speed has one colour
 MOST_TURNS: Final = 40  # maximum number of turns that are drawn separately
 MOST_DRAWN: Final = 10_000  # maximum number of points of a line
 
@@ -66,6 +67,11 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
     axes.add_collection(line)
     _draw_ends(axes, summary)
     if what == "speed":
+        line.autoscale()
+        lowest, highest = line.get_clim()
+        if lowest is not None and highest is not None and highest - lowest < _SPEED_RANGE:
+            lowest = max(0.5 * (lowest + highest - _SPEED_RANGE), 0.0)
+            line.set_clim(lowest, lowest + _SPEED_RANGE)
         figure.colorbar(line, ax=axes, label=Message("speed (m/s)"), pad=0.01, aspect=22)
         return figure
     reach = curvature_reach(summary)
