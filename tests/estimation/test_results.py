@@ -14,7 +14,15 @@ import skisnow
 from skisnow.campaign import Campaign, read_campaign, write_reference
 from skisnow.cli.shell import json_schema
 from skisnow.estimation import analyse, results_dict
-from skisnow.estimation.result_rows import experiment_results
+from skisnow.estimation.analysis import _relation_facts
+from skisnow.estimation.result_rows import (
+    experiment_hardness,
+    experiment_results,
+    first_hardness,
+    selected_model,
+    whole_degrees,
+    without_nan,
+)
 from skisnow.estimation.results import _published_relations, results_json
 from skisnow.snow.published.hand_hardness import RESISTANCE_SOURCE
 from tests.coded import raises
@@ -65,6 +73,7 @@ def test_the_paper_s_order_of_the_definitions(results: Json, terms: str) -> None
     assert H_e > H_A > H_V
     last = [value for name, value in rmse.items() if name.startswith("H_V")]
     assert max(last) < 1.05 * min(last)
+    assert results["penetration"]["campaign_model"]["priors"]["mean_exponent"] == 1.0
 
 
 def test_coefficients_are_in_the_units_of_the_table(results: Json, reference: Campaign) -> None:
@@ -112,6 +121,41 @@ def test_regressions_are_the_planned_ones_in_order(results: Json) -> None:
     # Eqn 13 is the truth of the soft site: 0.059 (1 - 0.266 ϑ)
     assert soft["interval"][0][0] < soft["b"][0] < soft["interval"][0][1]
     assert soft["interval"][1][0] < -0.059 * 0.266 < soft["interval"][1][1] or soft["p"] < 0.01
+
+
+def test_sites_share_a_letter_where_their_pair_of_that_quantity_is_not_shown_to_differ(results: Json) -> None:
+    """In the reference campaign H_V of sites C and E differs, S_f does not."""
+    letters = {(row["quantity"][:3], row["site"]): set(row["letters"]) for row in results["site_means"]}
+    pairs = [row for row in results["group_comparisons"] if row["by"] == "site"]
+    assert len(pairs) == 28 + 21
+    for row in pairs:
+        a, b = letters[row["quantity"], row["group_a"]], letters[row["quantity"], row["group_b"]]
+        assert bool(a & b) == (row["p_holm"] >= 0.05), row
+
+
+def test_comparison_with_eqn_11_is_that_of_the_model_with_a_linear_factor_of_the_volume(results: Json) -> None:
+    (model,) = (row for row in results["penetration"]["models"] if row["id"] == "H_V:a=none,b=linear")
+    own = {row["quantity"]: row for row in results["comparisons"] if "Eqn 11" in row["source"]}
+    for quantity, key in (("b0", "b0"), ("b1_per_rad", "b1")):
+        assert (own[quantity]["own"], own[quantity]["own_interval"]) == (model[key], model["intervals"][key])
+
+
+def test_reason_of_the_chosen_model_states_its_distance_from_the_best_above_five_thousandths_of_a_percent() -> None:
+    def reason(*rmse: float) -> Json:
+        fits = [SimpleNamespace(model=SimpleNamespace(id=name), rmse=value, n_parameters=n)
+                for name, value, n in zip(("best", "simple"), rmse, (3, 1), strict=True)]  # fmt: skip
+        analysis: Any = SimpleNamespace(selected=fits[1], table=SimpleNamespace(fits=fits))
+        chosen = present(selected_model(analysis))
+        assert chosen["id"] == "simple"
+        fields: Json = chosen["reason"].fields
+        return fields
+
+    more = {"rmse": 0.51, "parameters": 1, "best_rmse": 0.5, "best": "best", "best_parameters": 3}
+    assert reason(0.5, 0.51) == {**more, "more": pytest.approx(2.0)}
+    assert reason(10.0, 10.0006)["more"] == pytest.approx(0.006)
+    for same in (10.0, 10.0004), (0.0, 0.0):
+        assert reason(*same).keys() == more.keys()
+    assert reason(10.0, 9.0) == {"rmse": 9.0, "parameters": 1}
 
 
 def test_the_same_seed_gives_the_same_numbers(reference: Campaign, results: Json) -> None:
@@ -241,6 +285,11 @@ def test_a_recording_without_a_density_has_a_hardness() -> None:
     (row,) = _published_relations(analysis)
     assert (row["n"], row["snow_density_kg_per_m3"], row["penetration_resistance_kPa"]) == (2, 300.0, 100.0)
     assert (row["hand_hardness"], row["hardness_relation"]) == ("1F+", RESISTANCE_SOURCE)
+    name, told = _relation_facts(row)
+    assert name == "hardness at A"
+    assert told.startswith("100 kPa, hand hardness 1F+ (index ")
+    sampled = _relation_facts({**row, "penetration_resistance_kPa": None, "hand_hardness_index": None})
+    assert sampled[1].startswith("hand hardness outside of the range")
 
 
 def test_too_few_resamples_are_rejected(make_campaign: MakeCampaign) -> None:
@@ -256,4 +305,42 @@ def test_an_analysis_shows_the_ends_of_its_interval_and_tells_its_steps(referenc
     steps: list[str] = []
     analysis = skisnow.analyse(reference, n_resamples=100, progress=steps.append)
     assert any("236" in step for step in steps)
-    assert f"{analysis.own_hardness.low:.4g}" in dict(analysis._repr_facts().rows)["H_V"]
+    shown = dict(analysis._repr_facts().rows)
+    assert f"{analysis.own_hardness.low:.4g}" in shown["H_V"]
+    assert (shown["penetration"].split()[0], shown["shear"].split()[0]) == ("236", "108")
+    assert shown["model"].partition(", rmse")[0] == analysis.results["penetration"]["selected"]["id"]
+
+
+def test_first_hardness_is_that_of_the_first_series_on_an_edge_that_has_one(make_campaign: MakeCampaign) -> None:
+    """At 45° and 2 mm the wedge has 200 mm · 2² mm²/2 = 400 mm³: 300 N give 0.75 N/mm³."""
+    angles, depths = {"flat": 0, "shallow": 45, "first": 45, "second": 45}, (3.0, 0.0, 2.0, 4.0)
+    rows = [(name, "A", "ski", angle, load, depth) for (name, angle), depth in zip(angles.items(), depths, strict=True)
+            for load in (100, 200, 300)]  # fmt: skip
+    name, hardness = present(first_hardness(make_campaign(rows)))
+    assert name == "first"
+    assert hardness == pytest.approx(0.75)
+    assert first_hardness(make_campaign(rows[:6])) is None
+
+
+def test_hardness_of_a_campaign_without_penetration_tests(make_campaign: MakeCampaign) -> None:
+    campaign = make_campaign(shear=[("s1", "A", "blade", 90, 6, 250, 30)])
+    assert experiment_hardness(campaign).shape == (0,)
+    assert first_hardness(campaign) is None
+
+
+def test_angles_are_whole_to_eleven_decimals() -> None:
+    assert whole_degrees(np.radians([0.1, 35.0, 12.345678901234])) == [0.1, 35.0, 12.34567890123]
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        ([1.0, 2.0], [1.0, 2.0]),
+        ([1.0, math.nan], None),
+        ({"b": [[0.5, math.inf]]}, {"b": [None]}),
+        ([1.0, math.inf, 2.0], [1.0, None, 2.0]),
+        (["a", None], ["a", None]),
+    ],
+)
+def test_an_interval_is_null_unless_both_ends_are_known(value: object, written: object) -> None:
+    assert without_nan(value) == written

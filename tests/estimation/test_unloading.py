@@ -75,6 +75,11 @@ def test_an_exact_series_gives_its_ratio_back(rows: list[Row], make_campaign: Ma
     assert row["k_u_N_per_mm3"] == pytest.approx(RATIO * row["H_V_N_per_mm3"], rel=1e-9)
     for key, value in (("unloading_ratio_interval", RATIO), ("k_u_interval_N_per_mm3", row["k_u_N_per_mm3"])):
         assert row[key][0] < value < row[key][1]
+    own, of_ratio, of_hardness = (
+        np.log(np.array(row[f"{key}_interval{unit}"]) / row[f"{key}{unit}"])
+        for key, unit in (("k_u", "_N_per_mm3"), ("unloading_ratio", ""), ("H_V", "_N_per_mm3"))
+    )
+    np.testing.assert_allclose(own**2, of_ratio**2 + of_hardness**2, rtol=1e-9)
 
 
 def test_an_exact_way_back_leaves_the_prior_of_its_scatter(make_campaign: MakeCampaign) -> None:
@@ -82,6 +87,9 @@ def test_an_exact_way_back_leaves_the_prior_of_its_scatter(make_campaign: MakeCa
     penetration = analysed(make_campaign, flat()).penetration
     assert penetration is not None and penetration.unloading is not None
     assert penetration.unloading.rebound_scatter == pytest.approx(math.sqrt(0.2 * 0.05**2 / 2.2), rel=1e-3)
+    unloading = present(analysed(make_campaign, flat(), gauge=1e-9).penetration).unloading
+    assert unloading.rebound_freedom == pytest.approx(2.2)
+    assert np.isfinite(unloading.rebound_ratio_error).all()
 
 
 def test_the_way_back_is_that_of_the_law_of_the_simulations() -> None:
@@ -256,6 +264,13 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
         shift = np.where(np.arange(6) % 3 == j, step, 0.0)
         squares += ((fitted(returning=shift).rebound_ratio - fitted(returning=-shift).rebound_ratio) / (2 * step)) ** 2
     np.testing.assert_allclose(fitted().rebound_ratio_error, u * np.sqrt(squares), rtol=2e-3)
+    deepest = readings.penetration_depth[readings.largest]
+    above, limit = (
+        unloading(tests, readings, value, replace(model, offset=share * deepest), np.zeros(2, dtype=bool))
+        for share in (2.0, 0.9)
+    )
+    assert above.rebound_ratio.tolist() == limit.rebound_ratio.tolist()
+    assert np.isfinite(limit.rebound_ratio).all()
 
 
 def test_an_interval_that_reaches_zero_has_no_reciprocal() -> None:

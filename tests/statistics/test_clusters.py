@@ -96,10 +96,13 @@ def test_one_cluster_has_no_interval() -> None:
 def test_fewer_than_two_clusters_or_too_few_observations() -> None:
     one = cluster_intervals([1.0, 2.0, 4.0], [0.0, 1.0, 2.0], ["a", "a", "a"])
     assert one.n_clusters == 1
-    assert np.isnan(one.intervals).all()
     exact = cluster_intervals([1.0, 2.0], [0.0, 1.0], ["a", "b"])
-    assert np.isnan(exact.intervals).all()
     np.testing.assert_allclose(exact.coefficients, [1.0, 1.0], rtol=1e-14)
+    rng = np.random.default_rng(4)
+    crowded = [cluster_intervals(rng.normal(size=6), rng.normal(size=(6, 5)), [0, 0, 0, 1, 1, 2]) for _ in range(9)]
+    for undetermined in (one, exact, *crowded):
+        assert np.isnan([undetermined.standard_errors, undetermined.degrees_of_freedom]).all()
+        assert np.isnan(undetermined.intervals).all()
 
 
 def test_two_sites_with_slopes_of_their_own() -> None:

@@ -143,16 +143,25 @@ def test_wampler5_has_the_coefficients_of_its_design_to_the_digits_that_are_left
 
 
 def test_a_weighted_sum_has_the_shares_of_its_squared_weights() -> None:
-    """y = 3 x₁ + 2 x₂ + noise of variance 3, x of variance 1: 9/16, 4/16, 0 and 3/16 left; a correlation of two of
+    """y = 3 x₁ - 2 x₂ + noise of variance 3, x of variance 1: 9/16, 4/16, 0 and 3/16 left; a correlation of two of
     the columns, drawn independently, moves a share by 2 · 3 · 2/16/√n."""
     rng = np.random.default_rng(1)
     x = rng.standard_normal((4000, 3))
-    found = variance_shares(x @ [3.0, 2.0, 0.0] + np.sqrt(3.0) * rng.standard_normal(4000), x)
+    y = x @ [3.0, -2.0, 0.0] + np.sqrt(3.0) * rng.standard_normal(4000)
+    found = variance_shares(y, x)
     assert found.share == pytest.approx([9 / 16, 4 / 16, 0.0], abs=0.03)
     assert found.left == pytest.approx(3 / 16, abs=0.02)
     assert found.interval[:2, 0] == pytest.approx([9 / 16, 4 / 16], abs=0.06)
     assert np.all(found.interval[:, 0] <= found.share)
     assert np.all(found.share <= found.interval[:, 1])
+    for unit in (1e-3, 1e3):
+        np.testing.assert_allclose(variance_shares(unit * y, x).interval, found.interval, rtol=1e-9, atol=1e-15)
+
+
+def test_interval_of_a_share_ends_at_one() -> None:
+    """Four points, slope 0.95 ± 2.01: 2.96 at most has more than the variance of y, and 0 is inside."""
+    found = variance_shares([0.0, 2.0, 1.0, 3.5], [[0.0], [1.0], [2.0], [3.0]])
+    assert found.interval.tolist() == [[0.0, 1.0]]
 
 
 def test_what_no_input_takes_along_alone_is_left() -> None:

@@ -145,9 +145,8 @@ class SeriesFit:
         self._n_series = self._total(np.ones(readings.n_series))
         self._n_seen = readings.sums(self._seen)
         self._h, self._g, self._d = np.log(hardness), np.ones_like(hardness), np.zeros_like(hardness)
-        everywhere = np.ones(n_groups)
         self._spreads = Spreads(
-            priors.seating**2 * everywhere, everywhere, priors.layering**2 * everywhere, priors.scatter**2 * everywhere
+            *(np.full(n_groups, prior) for prior in (priors.seating**2, 1.0, priors.layering**2, priors.scatter**2))
         )
 
     def solve(self) -> FittedSeries:

@@ -232,17 +232,17 @@ def cluster_intervals(response: npt.ArrayLike, predictors: npt.ArrayLike, cluste
         )
     names, cluster = np.unique(labels, return_inverse=True)
     fit = solve_least_squares(response, predictors)
-    n, p = fit.orthogonal.shape
-    errors, dof = np.full(p, np.nan), np.full(p, np.nan)
-    if len(names) > 1 and n > p:
-        errors, dof = _bias_reduced(fit, cluster, len(names))
+    errors, dof = _bias_reduced(fit, cluster, len(names))
     half = expanded_factor(dof, CONFIDENCE) * errors
     intervals = np.stack((fit.coefficients - half, fit.coefficients + half), axis=-1)
     return ClusterIntervals(intervals, errors, dof, len(names), fit.coefficients)
 
 
 def _bias_reduced(fit: LeastSquares, cluster: npt.NDArray[np.intp], G: int) -> tuple[FloatArray, FloatArray]:
-    """Bias-reduced standard errors (p,) from the clusters, and their degrees of freedom; NaN if undetermined."""
+    """Bias-reduced standard errors (p,) from the clusters, and their degrees of freedom; NaN if undetermined.
+
+    With one cluster, or n = p, an eigenvector of eigenvalue 1 takes part in each coefficient: all are NaN.
+    """
     Q = fit.orthogonal
     share = _cluster_sums(Q[:, :, None] * Q[:, None, :], cluster, G)
     value, vector = np.linalg.eigh(share)
