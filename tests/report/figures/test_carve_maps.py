@@ -22,14 +22,17 @@ from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.carving_figure import arc_through, carved_skis, contact_ends
 from skisnow.report.figures.drawing import PNG_WIDTH, Drawing, require_drawable, write_figure
 from skisnow.report.figures.style import journal_style, site_styles
+from skisnow.report.run.drawings import run_drawings
 from skisnow.report.study_layout import map_layout
 from skisnow.report.study_maps import grip_map, radius_map, share_of_limit
-from skisnow.report.track.report import track_comparison
+from skisnow.report.track.report import comparison_drawing, track_comparison, track_drawings
 from skisnow.studies import StudyTable
+from skisnow.track.summary import track_summary
 from skisnow.track.track import Track
 from tests.coded import raises
 
 from ..conftest import Reported
+from ..runs import circle_run
 
 ASKED = {"edge_angle_deg": 45, "load_N": 800, "published": "race-piste", "unloading_ratio": 10}
 
@@ -276,6 +279,16 @@ def drawn(found: Comparison) -> tuple[Axes, Axes]:
 def winding(count: int) -> FloatArray:
     way = np.linspace(0.0, 40.0, count)
     return np.column_stack([way, 3.0 * np.sin(way / 5.0), 0.0 * way])
+
+
+def test_a_figure_of_more_than_a_column_is_wide_so_that_it_scrolls_on_a_telephone(reference: Reported) -> None:
+    data, track = ReportData(reference.analysis), track_of(winding(300))
+    with journal_style():
+        figures = [draw(data, site_styles(data)) for draw in DRAWERS]
+        figures += [*track_drawings(track_summary(track)), comparison_drawing(compare_tracks(track, track))]
+        drawings = [each for each in (*figures, *run_drawings(circle_run())) if isinstance(each, Drawing)]
+        of_two_columns = {each.name for each in drawings if each.figure.get_figwidth() > 86.0 / 25.4}
+    assert {each.name for each in drawings if each.wide} == of_two_columns
 
 
 def test_curves_begin_at_the_start_and_show_the_largest() -> None:

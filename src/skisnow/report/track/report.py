@@ -140,7 +140,7 @@ def comparison_drawing(comparison: Comparison) -> Drawing:
     names = dict(zip(("simulated", "measured"), comparison.names, strict=True))
     caption = prose("{simulated} and {measured} from above, and the distance between them along the latter.", **names)
     alt = Message("{simulated} and {measured} from above, and the distance between them.", **names)
-    return Drawing("track_comparison", caption, alt, track_comparison(comparison))
+    return Drawing("track_comparison", caption, alt, track_comparison(comparison), wide=True)
 
 
 def _draw_plan(axes: Axes, comparison: Comparison) -> None:
