@@ -15,6 +15,7 @@ import pytest
 from markupsafe import escape
 
 from skisnow._support.errors import OutputError
+from skisnow._support.messages import in_language
 from skisnow._support.staging import write_file
 from skisnow.campaign import QUALITY_FLAGS, Campaign
 from skisnow.campaign.records import TurningReadings
@@ -339,11 +340,13 @@ def test_long_tables_are_cut_with_a_sentence(campaign: Campaign, tmp_path: Path)
 
 def test_the_days_of_the_campaign_are_read_from_its_times(campaign: Campaign) -> None:
     shear = first_shear(campaign, 3)
-    times = ("2026-02-03 10:00", "2026-01-31T09:30", "noon")
+    times = ("2026-02-03 10:00", "2026-01-31T09:30", "2026-02-31")
     dated = replace(
         campaign, penetration=None, density=None, drop_cone=None, shear=replace(shear, further={"time": times})
     )
-    assert ReportData(analysis_of(dated)).dates == "2026-01-31 to 2026-02-03"
+    assert str(ReportData(analysis_of(dated)).dates) == "31 Jan 2026 to 3 Feb 2026"
+    with in_language("de"):
+        assert str(ReportData(analysis_of(dated)).dates) == "31. 1. 2026 bis 3. 2. 2026"
     assert ReportData(analysis_of(replace(dated, shear=shear))).dates is None
 
 

@@ -79,6 +79,12 @@ def names_of(data: ReportData) -> frozenset[str]:
     return frozenset((*texts, *QUALITY_FLAGS, *experiments))
 
 
+def test_the_time_of_the_analysis_is_written_as_in_the_language(reference: Reported, german: str) -> None:
+    at = reference.analysis.time
+    assert f'<time datetime="{at:%Y-%m-%dT%H:%M:%S}+00:00">{at.day}. {at.month}. {at:%Y, %H:%M} UTC</time>' in german
+    assert f">{at.day} {at:%b %Y, %H:%M} UTC</time>" in reference.html
+
+
 def test_no_text_of_a_german_report_is_left_in_english(reference: Reported, german: str) -> None:
     names = names_of(ReportData(reference.analysis))
     assert '<html lang="de">' in german

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import date, datetime
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import BoolArray, FloatArray
-from ..._support.messages import Message
+from ..._support.messages import Message, current_language, translated
 from ..._support.units import N_PER_MM2, N_PER_MM3
+from ...campaign.reading.columns import iso_moment
 from ...campaign.records import Campaign
 from ...estimation import Analysis
 from ...estimation.hardness import Hardness, ShearStress
@@ -23,8 +24,6 @@ from ..formatting import counted, whole
 
 TextArray: TypeAlias = npt.NDArray[np.str_]
 Json: TypeAlias = dict[str, Any]
-
-_DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
 
 
 def is_synthetic(name: str) -> bool:
@@ -181,11 +180,11 @@ class ReportData:
 
     @property
     def dates(self) -> str | None:
-        """The only ISO date in the columns ``time``, or the first and last one in words; None without one."""
-        days: set[str] = set()
+        """The only date in the columns ``time``, or the first and last one, in words; None without one."""
+        days: set[date] = set()
         for table in (self.campaign.penetration, self.campaign.shear, self.campaign.density, self.campaign.drop_cone):
-            cells = set(table.further.get("time", ())) if table is not None else set()
-            days |= {match[0] for cell in cells if (match := _DATE.match(cell.strip()))}
+            moments = map(iso_moment, set(table.further.get("time", ())) if table is not None else ())
+            days |= {datetime.fromisoformat(moment).date() for moment in moments if moment and "-" in moment}
         if len(days) < 2:
-            return min(days, default=None)
+            return translated(min(days), current_language()) if days else None
         return Message("{low} to {high}", low=min(days), high=max(days))

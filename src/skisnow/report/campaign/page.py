@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from datetime import UTC
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
@@ -13,7 +14,7 @@ from markupsafe import Markup
 
 from ..._support.environment import paused_collector
 from ..._support.errors import ParameterError, require_language
-from ..._support.messages import ENGLISH, Message, in_language
+from ..._support.messages import ENGLISH, Message, current_language, in_language, translated
 from ..._support.staging import prepare_folder, staged, write_file
 from ...campaign import Campaign
 from ...estimation import Analysis
@@ -171,7 +172,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "stated": _stated_uncertainties(results["campaign"]),
         "synthetic": data.synthetic,
         "dates": data.dates,
-        "analysed": results["provenance"]["time"],
+        "analysed": translated(data.analysis.time.astimezone(UTC), current_language()),
         "headline": headline(data),
         "verdicts": verdicts(results),
         "counts": data.counts,
