@@ -276,7 +276,7 @@ def test_a_constant_speed_has_one_colour_and_a_changing_speed_all() -> None:
     changing = np.stack([16.0 * np.sin(angle), 16.0 * (1.0 - np.cos(angle))], axis=1)
     with journal_style():
         spread = [
-            np.ptp(line.to_rgba(line.get_array())[:, 1])
+            np.ptp(line.to_rgba(np.asarray(line.get_array()))[:, 1])
             for place in (circle(16.0, 12.0), changing)
             for line in coloured_map(track_summary(track(place)), "speed").axes[0].collections
         ]

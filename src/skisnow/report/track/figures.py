@@ -69,7 +69,7 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
     if what == "speed":
         line.autoscale()
         lowest, highest = line.get_clim()
-        if lowest is not None and highest is not None and highest - lowest < _SPEED_RANGE:
+        if joined.any() and highest - lowest < _SPEED_RANGE:
             lowest = max(0.5 * (lowest + highest - _SPEED_RANGE), 0.0)
             line.set_clim(lowest, lowest + _SPEED_RANGE)
         figure.colorbar(line, ax=axes, label=Message("speed (m/s)"), pad=0.01, aspect=22)
