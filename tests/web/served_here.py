@@ -3,10 +3,7 @@
 The process that draws for the lab runs this file, too, under another name: nothing stands here that takes long to load.
 """
 
-import os
 import sys
-
-UNDRAWN = "SKISNOW_TESTS_UNDRAWN"
 
 
 def leave_figures_empty() -> None:
@@ -33,9 +30,8 @@ if __name__ == "__main__":
     from skisnow.web.settings import Lab
 
     place, port, tells = globals()["given"]
-    os.environ[UNDRAWN] = "1"
     runs.COMMAND = (sys.executable, str(Path(__file__).with_name("simulate_here.py")))
     with Store.open(place) as store:
         serve(Lab(store, place.parent / "lab"), host="127.0.0.1", port=port, token=None, tell=tells.send)
-elif os.environ.get(UNDRAWN):
+elif __name__ == "__mp_main__":  # in its worker processes
     leave_figures_empty()

@@ -28,6 +28,7 @@ from starlette.responses import Response
 
 from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
 from .._support.messages import Message, joined
+from .._support.processes.starting import worker_context
 from .._support.user_files.text_files import shown
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import CampaignFiles
@@ -220,7 +221,7 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
         too.
     """
     assert not named
-    context = multiprocessing.get_context("spawn")  # never by fork: the server has threads
+    context = worker_context()
     hears, tells = context.Pipe(duplex=False)
     process = context.Process(target=_run_confined, args=(tells, bounds, work, args), daemon=True)
     process.start()
@@ -291,9 +292,7 @@ class Worker:
     async def do(self, work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
         """Call a function of a module in the worker process; arguments and result are copies."""
         if self._pool is None:
-            # never by fork: the server has threads
-            context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=end_with_server)
+            self._pool = ProcessPoolExecutor(1, mp_context=worker_context(), initializer=end_with_server)
         return await asyncio.wrap_future(self._pool.submit(work, *args, **named))
 
     def end(self) -> None:

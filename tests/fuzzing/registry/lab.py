@@ -1,6 +1,5 @@
 """Readers of the store and of the lab: the SQLite store, uploads, jobs, what a killed process left."""
 
-import asyncio
 import json
 import sqlite3
 from contextlib import closing, suppress
@@ -126,9 +125,10 @@ def _job_files() -> Files:
 
 def _read_jobs(folder: Path) -> object:
     runs = Runs(folder)
-    return [
-        (job, asyncio.run(runs._ended_as(Job("run-1", "", {}, ""), "x", cancelled=False))) for job in runs.jobs()
-    ], _ski_of_job(folder / "run-1/job.json")
+    for _ in runs.jobs():
+        with suppress(StopIteration):  # it waits for nothing, so needs no event loop
+            runs._ended_as(Job("run-1", "", {}, ""), "x", cancelled=False).send(None)
+    return runs.jobs(), _ski_of_job(folder / "run-1/job.json")
 
 
 def _placed(folder: Path) -> object:

@@ -143,7 +143,7 @@ def test_processes_are_let_go_before_or_behind_their_last_point(
 
     leash = SimpleNamespace(close=lambda: done.append("let go"))
     context = SimpleNamespace(Pipe=lambda **_: (None, leash))
-    monkeypatch.setattr("skisnow._support.processes.batch.multiprocessing.get_context", lambda _: context)
+    monkeypatch.setattr("skisnow._support.processes.batch.worker_context", lambda: context)
     executor = SimpleNamespace(shutdown=shut_down)
     monkeypatch.setattr("skisnow._support.processes.batch.ProcessPoolExecutor", lambda *_, **_options: executor)
     process_crew(dict, 2).close(at_once)

@@ -5,7 +5,6 @@ Workers are processes or threads of this computer, or an executor of the caller;
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import threading
@@ -31,6 +30,7 @@ from typing import Any, Final, Self, TypeAlias
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
 from .kept_rows import KeptRows, NumberedText, Row, json_text
+from .starting import worker_context
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Takes the number of finished points and that of all."""
@@ -83,8 +83,8 @@ def run_batch(
 
     Notes
     -----
-    Workers are started afresh ("spawn"), on every system alike. A script that calls this with several workers needs
-    the usual ``if __name__ == "__main__":``.
+    Workers share nothing with this process. A script that calls this with several workers needs the usual
+    ``if __name__ == "__main__":``.
 
     References
     ----------
@@ -276,10 +276,10 @@ class Crew:
 def process_crew(function: PointFunction, workers: int) -> Crew:
     """Crew of new processes on this computer.
 
-    They start with the first chunk ("spawn", on every system) and stay, because loading the libraries takes long. They
-    end when the connection to their parent closes, however the parent ends.
+    They start with the first chunk and stay, and end when the connection to their parent closes, however the parent
+    ends.
     """
-    context = multiprocessing.get_context("spawn")
+    context = worker_context()
     alive, leash = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_prepare_worker, initargs=(function, alive))
 

@@ -1,0 +1,28 @@
+"""How worker processes are started."""
+
+from __future__ import annotations
+
+import multiprocessing
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from multiprocessing.context import ForkServerContext, SpawnContext
+
+
+def worker_context() -> ForkServerContext | SpawnContext:
+    """Context that starts worker processes without the threads and locks of this process.
+
+    On Linux a server process loads once what this process has loaded of skisnow, and each worker is a fork of it, which
+    takes milliseconds. Elsewhere each worker loads skisnow again: Windows has no fork, and that of macOS is not safe
+    after its libraries are loaded.
+    """
+    if sys.platform != "linux":
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(sorted(name for name in sys.modules if _is_own(name)))
+    return context
+
+
+def _is_own(module: str) -> bool:
+    return module.partition(".")[0] == "skisnow" and not module.endswith("__main__")
