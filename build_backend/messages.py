@@ -94,6 +94,25 @@ def extract(package: str) -> list[Template]:
     return [template for template in templates if _has_words(template)]
 
 
+def unread_templates(source: str | bytes) -> list[int]:
+    """Lines whose template is composed, such as f"{size} m" or "a" if alone else "b": no extraction finds its text.
+
+    Texts that become fields of a message are typed as `Message`, so that mypy rejects plain ones.
+    """
+    composed = (ast.JoinedStr, ast.IfExp, ast.BoolOp, ast.BinOp)
+    return [
+        node.lineno
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KEYWORDS["**.py"][1]
+        for argument in node.args[:3]
+        if isinstance(argument, composed) and any(map(_is_text, ast.iter_child_nodes(argument)))
+    ]
+
+
+def _is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
+
+
 def _has_words(template: Template) -> bool:
     """False for templates such as "{place}: {problem}", which need no translation."""
     literals = (literal for text in _texts(template) for literal, *_ in Formatter().parse(text))

@@ -104,6 +104,7 @@ def test_a_clamp_that_is_too_long_is_rejected(length: float, told: str) -> None:
 def test_a_number_that_looks_like_another_unit_is_told(changed: dict[str, float], told: str) -> None:
     (said,) = implausible_values(replace(carve_question(ASKED | SNOW), **changed))  # type: ignore[arg-type]
     assert said.startswith(told)
+    assert said.text("de").split(maxsplit=2)[:2] == [said.split()[0], "ist"]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
+from skisnow._support.messages import Message
 from skisnow.scenario import read_snow_map, read_terrain
 from skisnow.scenario.map_system import MapSystem, _scale, length_unit, map_system
 from skisnow.scenario.raster import Raster, placed_heights
@@ -131,6 +132,9 @@ def test_an_esri_grid_is_rejected_with_the_place_of_the_fault(tmp_path: Path, te
     with raises(ParameterError, place) as error:
         read_terrain(path)
     assert str(error.value).startswith(str(path))
+    english, german = str(error.value).replace(str(path), ""), error.value.text("de").replace(str(path), "")
+    assert not {"the", "is", "has", "of", "line"} & {*german.split()}
+    assert german != english
 
 
 @pytest.mark.parametrize("size", ["0.0125", "0.05"])
@@ -210,7 +214,7 @@ def test_rows_and_columns_run_in_either_direction(east: float, north: float) -> 
     x, y = 101.0 + 2.0 * np.arange(3)[:: int(east)], 51.0 + 2.0 * np.arange(2)[:: int(north)]
     raster = Raster(
         path="heights", values=0.125 * x[None, :] + 0.5 * y[:, None], first=(x[0], y[0]),
-        step=(2.0 * east, 2.0 * north), height_unit=10.0, system=None, where=lambda row, column: f"{row}, {column}",
+        step=(2.0 * east, 2.0 * north), height_unit=10.0, system=None, where=lambda *cell: Message("{cell}", cell=cell),
     )  # fmt: skip
     found = placed_heights(raster, column="z_m")
     assert (found.x.tolist(), found.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])

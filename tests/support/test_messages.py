@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from build_backend.messages import faults, languages
+from build_backend.messages import SOURCES, faults, languages, unread_templates
 
 from skisnow._support.arrays import content_bytes
 from skisnow._support.errors import FieldDataError, ModelLimitWarning, ParameterError, RangeWarning, SkisnowError
@@ -23,6 +23,15 @@ NESTED = Message("{first} and {second}", first=Message("Low"), second="Low")
 @pytest.mark.parametrize("language", languages())
 def test_every_template_has_its_translation(language: str) -> None:
     assert faults(language) == []
+
+
+def test_every_template_is_one_literal_that_is_extracted() -> None:
+    assert {path.name: lines for path in SOURCES.rglob("*.py") if (lines := unread_templates(path.read_bytes()))} == {}
+    composed = ('f"{size} m"', '"low" if deep else "high"', 'words or "low"', '"low " + words')
+    assert [unread_templates(f"Message({text})") for text in composed] == [[1]] * 4
+    assert [unread_templates(f"Message({text})") for text in ('"{size} m"', 'words["low"]', "low if a else b")] == [
+        []
+    ] * 3
 
 
 @pytest.mark.parametrize(

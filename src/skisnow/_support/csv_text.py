@@ -42,7 +42,7 @@ _HEAD: Final = 1 << 16
 class UnreadableTextError(Exception):
     """A file is not valid text. ``row`` is the line of the problem, or None if unknown."""
 
-    def __init__(self, *, value: str | None, allowed: str, action: str, row: int | None = None) -> None:
+    def __init__(self, *, value: str | None, allowed: Message, action: Message, row: int | None = None) -> None:
         super().__init__(allowed)
         self.row, self.value, self.allowed, self.action = row, value, allowed, action
 

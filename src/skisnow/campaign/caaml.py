@@ -104,7 +104,7 @@ class _Profile:
             action = Message("Add snowPackCond/hS, or export it top down.")
             self._refuse("SnowProfileMeasurements", "bottom up", Message("top down, or the height of the snow"), action)
 
-    def _refuse(self, element: str, value: str, allowed: str, action: str) -> NoReturn:
+    def _refuse(self, element: str, value: str, allowed: Message, action: Message) -> NoReturn:
         """Raise a FieldDataError with one problem at an element of this file."""
         raise FieldDataError(
             [error("unreadable_file", self._file, column=element, value=value, allowed=allowed, action=action)]

@@ -33,8 +33,8 @@ class Problem:
     column: str | None = None
     experiment: str | None = None
     value: str | None = None
-    allowed: str
-    action: str
+    allowed: Message
+    action: Message
     needs_action: bool = True
 
     def __str__(self) -> str:

@@ -36,13 +36,15 @@ _VERSIONS: Final = ("0.9", "0.95", "0.99", "1.0", "1.1", "1.2")
 _OFFSET_FIRST: Final = _VERSIONS[:4]
 _ZONES: Final = (-14.0, 14.0)
 """Hours east of Greenwich that a clock may show."""
+_CELSIUS: Final = Message("State units_offset = 273.15 if °C.")
+_UNITS: Final = Message("State units_offset and units_multiplier.")
 _PLAUSIBLE: Final = {
-    **dict.fromkeys(("TA", "TD", "TSS", "TSG"), (180.0, math.inf, "above 180 K", "units_offset = 273.15 if °C")),
-    "RH": (-0.05, 1.2, "from 0 to 1", "units_multiplier = 0.01 if %"),
-    "VW": (0.0, math.inf, "from 0 m/s", "units_offset and units_multiplier"),
-    "ISWR": (-50.0, math.inf, "from -50 W/m²", "units_offset and units_multiplier"),
+    **dict.fromkeys(("TA", "TD", "TSS", "TSG"), (180.0, math.inf, Message("a median above 180 K"), _CELSIUS)),
+    "RH": (-0.05, 1.2, Message("a median from 0 to 1"), Message("State units_multiplier = 0.01 if %.")),
+    "VW": (0.0, math.inf, Message("a median from 0 m/s"), _UNITS),
+    "ISWR": (-50.0, math.inf, Message("a median from -50 W/m²"), _UNITS),
 }
-"""By field: between which SI values the median of a station lies, and the missing part of the header."""
+"""By field: limits of the median in SI, the allowed medians in words, and what is missing in the header."""
 _GAPS: Final = (-999.0, -9999.0, -99999.0)
 """Numbers that loggers write for a missing value."""
 
@@ -122,13 +124,15 @@ class _Reading:
         first = self._lines[0].split() if self._lines else []
         if len(first) < 3 or first[0] != "SMET" or first[2] != "ASCII":
             value = self._lines[0][:80] if self._lines else "nothing"
-            self._refuse(1, "", value, "SMET, a version and ASCII", "Export the station's data as SMET in ASCII.")
+            action = Message("Export the station's data as SMET in ASCII.")
+            self._refuse(1, "", value, Message("SMET, a version and ASCII"), action)
         if first[1] not in _VERSIONS:
-            self._refuse(1, "", first[1], f"a version among {', '.join(_VERSIONS)}", "Export it in one of these.")
+            allowed = Message("a version among {versions}", versions=list(_VERSIONS))
+            self._refuse(1, "", first[1], allowed, Message("Export it in one of these."))
         self._version = first[1]
         self._header, self._data = self._split()
 
-    def _refuse(self, line: int, column: str, value: str, allowed: str, action: str) -> NoReturn:
+    def _refuse(self, line: int, column: str, value: str, allowed: Message, action: Message) -> NoReturn:
         """Raise a FieldDataError with one problem at a line and, unless it is "", a column."""
         problem = error(
             "unreadable_file", self._file, row=line, column=column or None, value=value, allowed=allowed, action=action
@@ -145,7 +149,8 @@ class _Reading:
             key, equals, value = plain.partition("=")
             key, value = key.strip().lower(), value.strip()
             if equals and key in _READ and header.get(key, (row, value))[1] != value:
-                self._refuse(row, key, value, f"{header[key][1]} as in row {header[key][0]}", "Remove one of them.")
+                allowed = Message("{value} as in row {row}", value=header[key][1], row=header[key][0])
+                self._refuse(row, key, value, allowed, Message("Remove one of them."))
             if equals:
                 header[key] = (row, value)
         allowed, action = Message("a header and then [DATA]"), Message("The file is cut off; copy it again.")
@@ -155,16 +160,19 @@ class _Reading:
         """Station and readings in SI by field; rejects missing keys, other units and invalid rows."""
         for key in _NEEDED:
             if key not in self._header:
-                self._refuse(self._data, key, "nothing", f"the key {key} in the header", "Add it.")
+                allowed = Message("the key {key} in the header", key=key)
+                self._refuse(self._data, key, "nothing", allowed, Message("Add it."))
         line, listed = self._header["fields"]
         names = [_TIME if name.lower() == _TIME else name.upper() for name in listed.split()]
         if _TIME not in names or len(set(names)) != len(names):
-            self._refuse(line, "fields", listed[:80], f"different names, {_TIME} among them", "Correct the header.")
+            allowed = Message("different names, {time} among them", time=_TIME)
+            self._refuse(line, "fields", listed[:80], allowed, Message("Correct the header."))
         offset = self._number_of("tz", 0.0)
         low, high = _ZONES
         if not low <= offset <= high:
             row, text = self._header["tz"]
-            self._refuse(row, "tz", text[:80], f"hours from {low:g} to {high:g}", "Correct the time zone.")
+            allowed = Message("hours from {low:g} to {high:g}", low=low, high=high)
+            self._refuse(row, "tz", text[:80], allowed, Message("Correct the time zone."))
         times, table = self._times_and_values(names, offset)
         nodata = self._number_of("nodata", -999.0)
         values = self._in_si(np.where(table == nodata, math.nan, table), names)
@@ -175,8 +183,8 @@ class _Reading:
         latitude, longitude, altitude = (None if math.isnan(number) or number == nodata else number for number in place)
         for key, value, largest in (("latitude", latitude, 90.0), ("longitude", longitude, 180.0)):
             if value is not None and abs(value) > largest:
-                allowed = f"degrees from {-largest:g} to {largest:g}"
-                self._refuse(self._header[key][0], key, f"{value:g}", allowed, "Correct the place.")
+                allowed = Message("degrees from {low:g} to {high:g}", low=-largest, high=largest)
+                self._refuse(self._header[key][0], key, f"{value:g}", allowed, Message("Correct the place."))
         station = self._header.get("station_name", self._header["station_id"])[1]
         return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
 
@@ -201,12 +209,12 @@ class _Reading:
             valid = column[np.isfinite(column)]
             if name not in _PLAUSIBLE or not valid.size:
                 continue
-            low, high, allowed, fix = _PLAUSIBLE[name]
+            low, high, allowed, action = _PLAUSIBLE[name]
             with np.errstate(over="ignore"):
                 median = float(np.median(valid))
             if not low <= median <= high:
                 line = self._header["fields"][0]
-                self._refuse(line, name, f"median {median:g}", f"a median {allowed}", f"State {fix}.")
+                self._refuse(line, name, f"median {median:g}", allowed, action)
 
     def _require_no_gap(self, names: Sequence[str], table: FloatArray, values: FloatArray) -> None:
         """Reject numbers that loggers write for missing values, such as -999, if the header states another one."""
@@ -214,7 +222,9 @@ class _Reading:
             gaps = raw[np.isin(raw, _GAPS) & (column < _PLAUSIBLE[name][0])] if name in _PLAUSIBLE else raw[:0]
             if gaps.size:
                 line, text = self._header["nodata"]
-                self._refuse(line, name, f"{gaps[0]:g}", f"{text} for missing values", f"State nodata = {gaps[0]:g}.")
+                allowed = Message("{number} for missing values", number=text)
+                action = Message("State nodata = {gap}.", gap=f"{gaps[0]:g}")
+                self._refuse(line, name, f"{gaps[0]:g}", allowed, action)
 
     def _number_of(self, key: str, default: float) -> float:
         """Number of a key of the header, or `default` if the key is missing."""
@@ -227,7 +237,7 @@ class _Reading:
         """Number of a text; rejects what is not a finite number."""
         value = number(text)
         if math.isnan(value):
-            self._refuse(line, column, text[:80], "a finite number", "Correct the number.")
+            self._refuse(line, column, text[:80], Message("a finite number"), Message("Correct the number."))
         return value
 
     def _numbers_by_field(self, key: str, default: float, names: Sequence[str]) -> list[float]:
@@ -237,8 +247,8 @@ class _Reading:
         line, text = self._header[key]
         numbers = [self._number(line, key, part) for part in text.split()]
         if len(numbers) != len(names):
-            allowed = f"{len(names)}, one for each field"
-            self._refuse(line, key, f"{len(numbers)} numbers", allowed, "Correct the header.")
+            allowed = Message("{count}, one for each field", count=len(names))
+            self._refuse(line, key, f"{len(numbers)} numbers", allowed, Message("Correct the header."))
         return numbers
 
     def _times_and_values(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:
@@ -251,15 +261,18 @@ class _Reading:
             if not cells:
                 continue
             if len(cells) != len(names):
-                self._refuse(row, "", f"{len(cells)} cells", f"{len(names)}, one for each field", "Correct the row.")
+                allowed = Message("{count}, one for each field", count=len(names))
+                self._refuse(row, "", f"{len(cells)} cells", allowed, Message("Correct the row."))
             moment = self._moment(row, cells[place], zone)
             if times and moment <= times[-1]:
-                self._refuse(row, _TIME, cells[place], "a later time than the row before", "Sort the rows.")
+                allowed = Message("a later time than the row before")
+                self._refuse(row, _TIME, cells[place], allowed, Message("Sort the rows."))
             times.append(moment)
             cells[place] = "0"
             table.append([self._number(row, name, cell) for name, cell in zip(names, cells, strict=True)])
         if not times:
-            self._refuse(self._data, "", "no row", "at least one row below [DATA]", "Export the station's data again.")
+            allowed = Message("at least one row below [DATA]")
+            self._refuse(self._data, "", "no row", allowed, Message("Export the station's data again."))
         return np.array(times), np.array(table)
 
     def _moment(self, line: int, text: str, zone: timezone) -> float:
@@ -268,9 +281,11 @@ class _Reading:
             time = datetime.fromisoformat(text)
             moment = (time if time.tzinfo else time.replace(tzinfo=zone)).astimezone(UTC)
         except (ValueError, OverflowError):
-            self._refuse(line, _TIME, text[:80], "a time such as 2026-02-03T09:10", "Correct the time.")
+            allowed = Message("a time such as 2026-02-03T09:10")
+            self._refuse(line, _TIME, text[:80], allowed, Message("Correct the time."))
         if not MINYEAR < moment.year < MAXYEAR:  # so that each zone has this time
-            self._refuse(line, _TIME, text[:80], f"a year between {MINYEAR} and {MAXYEAR}", "Correct the time.")
+            allowed = Message("a year between {first} and {last}", first=MINYEAR, last=MAXYEAR)
+            self._refuse(line, _TIME, text[:80], allowed, Message("Correct the time."))
         return moment.timestamp()
 
 

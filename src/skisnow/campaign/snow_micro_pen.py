@@ -88,19 +88,20 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
     try:
         data = plain_bytes(path, most_bytes=MOST_BYTES)
     except ContentError as failure:
-        _refuse(path.name, failure.what, "a readable file", "Check its name and permissions.")
+        _refuse(path.name, failure.what, Message("a readable file"), Message("Check its name and permissions."))
     return parse_snow_micro_pen(path.name, data)
 
 
 def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
     """Parse the bytes of a ``.PNT`` file; errors as `read_snow_micro_pen`."""
     if not data:
-        _refuse(name, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
+        allowed = Message("a recording of a SnowMicroPen")
+        _refuse(name, "0 bytes", allowed, Message("Copy it from the instrument again."), "empty_file")
     if len(data) < HEADER_BYTES:
         allowed = Message(
             "at least {header_bytes} bytes, the header of a SnowMicroPen recording", header_bytes=HEADER_BYTES
         )
-        _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
+        _refuse(name, f"{len(data)} bytes", allowed, Message("Copy the file from the instrument again."))
     header: dict[str, Any] = {}
     for key, offset, form in _FIELDS:
         values = struct.unpack_from(f">{form}", data, offset)
@@ -123,7 +124,7 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
     )
 
 
-def _refuse(name: str, value: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
+def _refuse(name: str, value: str, allowed: Message, action: Message, code: str = "unreadable_file") -> NoReturn:
     """Raise a FieldDataError with one problem of the file `name`."""
     raise FieldDataError([error(code, name, value=value, allowed=allowed, action=action)])
 
@@ -146,11 +147,13 @@ def _require_plausible_header(file: str, header: dict[str, Any], size: int) -> N
                 low=low,
                 high=high,
             )
-            _refuse(file, f"{name} {header[name]:g}", allowed, "This is another kind of file, or a damaged one.")
+            action = Message("This is another kind of file, or a damaged one.")
+            _refuse(file, f"{name} {header[name]:g}", allowed, action)
     counts = {"samples": header["samples"], "needed": HEADER_BYTES + _SAMPLE_BYTES * header["samples"]}
     if size < counts["needed"]:
         allowed = Message("{needed} bytes or more for the {samples} samples that the header counts", **counts)
-        _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
+        action = Message("The file is cut off; copy it from the instrument again.")
+        _refuse(file, f"{size} bytes", allowed, action)
 
 
 def _text(raw: bytes) -> str:

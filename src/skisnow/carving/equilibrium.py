@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
 import numpy as np
 
 from .._support.errors import ParameterError, require_choice
+from .._support.messages import Message, template
 from ..ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
@@ -158,13 +159,14 @@ def carve(
         conditions = conditions._replace(hardness=hardness, excess=hardness * (first_ratio - 1.0))
     find = solved if groove == "edge" else _solve_with_path
     solution = find(model, conditions)
-    note: tuple[str, ...] = ()
+    note: tuple[Message, ...] = ()
     for gentler in (smaller for smaller in GENTLER_RATIOS if smaller < ratio):
         if solution.converged:
             break
         conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
         solution = find(model, conditions)
-        note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
+        words = template("computed with k_u/H_V = {ratio:g}: the steeper unloading that was asked did not converge")
+        note = (Message(words, ratio=gentler),)
     if laws is not None and not solution.converged:
         laws.require_finite()
     exact = laws is None and groove == "edge" and footprint_stiffness is None

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Final, Literal
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
+from .._support.messages import Message, template
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3, in_degrees_if_radians
 from ..parameters import Allowed, Declared, Label, Quantity, own_quantities, suggest_and_list
 from ..ski import Ski
@@ -262,17 +262,19 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
         ).tag("out_of_range", clamp_length=clamp_length_m, name=ski.name, most=most)
 
 
-def implausible_values(question: CarveQuestion) -> tuple[str, ...]:
+def implausible_values(question: CarveQuestion) -> tuple[Message, ...]:
     """Warnings about numbers that look as if they were in another unit."""
     texts = []
     degrees = in_degrees_if_radians(question.edge_angle_deg)
     if degrees is not None:
-        degrees_read = question.edge_angle_deg
-        texts.append(f"edge_angle_deg is {degrees_read:g}: that looks like radians. If it is, write {degrees:.4g}")
+        words = template("{name} is {value:g}: that looks like radians. If it is, write {degrees:.4g}")
+        texts.append(Message(words, name="edge_angle_deg", value=question.edge_angle_deg, degrees=degrees))
     low, high = USUAL_LOADS_N
     if not low <= question.load_N <= high:
-        texts.append(f"load_N is {question.load_N:g}: is it in kg or kN? It is read as newtons (80 kg weigh 785 N)")
+        words = template("load_N is {load:g}: is it in kg or kN? It is read as newtons (80 kg weigh 785 N)")
+        texts.append(Message(words, load=question.load_N))
     hardness = question.H_V_N_per_mm3
     if hardness is not None and hardness > GREATEST_LIKELY_HARDNESS:
-        texts.append(f"H_V_N_per_mm3 is {hardness:g}: is it in N/m³? If it is, write {hardness / N_PER_MM3:.4g}")
+        words = template("H_V_N_per_mm3 is {hardness:g}: is it in N/m³? If it is, write {converted:.4g}")
+        texts.append(Message(words, hardness=hardness, converted=hardness / N_PER_MM3))
     return tuple(texts)

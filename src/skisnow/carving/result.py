@@ -12,7 +12,7 @@ import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
+from .._support.messages import Message, template
 from .._support.units import MM, Facts, Shown, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
@@ -140,7 +140,7 @@ class Equilibrium(Shown):
     edge_line: FloatArray | None
     residual_force: float | None
     residual_moment: float | None
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
     iterations: int
     request: CarveRequest | None = None
     median_radius: Callable[[], float | None] | None = None
@@ -225,7 +225,7 @@ def equilibrium_of(
     conditions: Conditions,
     snow: SnowProperties,
     solution: Solution,
-    note: tuple[str, ...] = (),
+    note: tuple[Message, ...] = (),
     *,
     elements: int | None = None,
     other: Callable[[], float | None] | None = None,
@@ -334,14 +334,16 @@ def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> 
     return mean_behind / mean_before
 
 
-def _warnings_of_line(line: EdgeLine) -> tuple[str, ...]:
+def _warnings_of_line(line: EdgeLine) -> tuple[Message, ...]:
     """Warnings of a bend or twist too large for the linear beam."""
     warnings = []
     slope, twist = line.greatest_slope(), float(np.max(np.abs(line.bend[1])))
     if slope > LARGE_SLOPE:
-        warnings.append(
-            f"the ski bends to a slope of {slope:.2f}: beyond {LARGE_SLOPE} beams of small deflection are inexact"
+        words = template(
+            "the ski bends to a slope of {slope:.2f}: beyond {limit} beams of small deflection are inexact"
         )
+        warnings.append(Message(words, slope=slope, limit=LARGE_SLOPE))
     if twist > LARGE_SLOPE:
-        warnings.append(f"the ski twists by {math.degrees(twist):.0f} degrees: more than a linear torsion bar can tell")
+        words = template("the ski twists by {angle:.0f} degrees: more than a linear torsion bar can tell")
+        warnings.append(Message(words, angle=math.degrees(twist)))
     return tuple(warnings)

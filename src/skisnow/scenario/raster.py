@@ -25,17 +25,19 @@ class Limits(NamedTuple):
 
     lowest: float
     highest: float
-    note: str
+    note: Message
 
 
-_PLACE: Final = Limits(-1e8, 1e8, "Give coordinates in m.")
+_PLACE: Final = Limits(-1e8, 1e8, Message("Give coordinates in m."))
 _HEIGHT: Final = Limits(
     -5000.0,
     9000.0,
-    "A number outside often marks a hole. Fix: cut out a rectangle that is measured everywhere, or fill the gaps, such "
-    "as by gdal_fillnodata.",
+    Message(
+        "A number outside often marks a hole. Fix: cut out a rectangle that is measured everywhere, or fill the gaps, "
+        "such as by gdal_fillnodata."
+    ),
 )
-_SNOW: Final = Limits(0.0, 1e6, "Check the unit.")
+_SNOW: Final = Limits(0.0, 1e6, Message("Check the unit."))
 LIMITS: Final[Mapping[str, Limits]] = {
     "x": _PLACE,
     "y": _HEIGHT,
@@ -80,7 +82,7 @@ class Raster:
     step: tuple[float, float]
     height_unit: float
     system: MapSystem | None
-    where: Callable[[int, int], str]
+    where: Callable[[int, int], Message]
 
 
 def number_within(row: CsvRow, column: str) -> float:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from .._support.arrays import FloatArray
 from .._support.environment import import_extra
 from .._support.errors import ParameterError
-from .._support.messages import Message
+from .._support.messages import Message, template
 from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.user_files.text_files import is_file, plain_text
 from .map_system import LENGTHS, MapSystem, length_unit, map_system, raster_errors
@@ -56,7 +56,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
         step=(transform.a, transform.e),
         height_unit=unit,
         system=system,
-        where=lambda row, at: f"row {row + 1}, column {at + 1}",
+        where=lambda row, at: Message("row {row}, column {column}", row=row + 1, column=at + 1),
     )
     return placed_heights(raster, column=column)
 
@@ -140,7 +140,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     header, first = _header(path, text)
     for word in ("ncols", "nrows"):
         if word not in header:
-            _refuse(path, f"The header has no {word}. Is it an ESRI ASCII grid? Export it again")
+            _refuse(path, Message("The header has no {word}. Is it an ESRI ASCII grid? Export it again", word=word))
     require_size(path, header["ncols"], header["nrows"])
     counts = int(header["ncols"]), int(header["nrows"])
     steps = _cell(path, header, "dx"), _cell(path, header, "dy")
@@ -160,7 +160,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     return placed_heights(raster, column=column)
 
 
-def _refuse(path: str | Path, what: str) -> NoReturn:
+def _refuse(path: str | Path, what: Message) -> NoReturn:
     """Raise an error for a file that cannot be used; `what` is the reason."""
     raise ParameterError("{path}: {what}").tag("invalid", path=path, what=what)
 
@@ -191,9 +191,11 @@ def _cell(path: str | Path, header: Mapping[str, float], word: str) -> float:
     """Width of the cells in x (dx) or y (dy), or cellsize; rejects a header without it, or a width of 0 or less."""
     size = header.get(word, header.get("cellsize"))
     if size is None:
-        _refuse(path, f"The header has no cellsize, and no {word}. Is it an ESRI ASCII grid? Export it again")
+        words = template("The header has no cellsize, and no {word}. Is it an ESRI ASCII grid? Export it again")
+        _refuse(path, Message(words, word=word))
     if not size > 0.0:
-        _refuse(path, f"{word if word in header else 'cellsize'} is {size:g}. Allowed: above 0, in m")
+        stated = word if word in header else "cellsize"
+        _refuse(path, Message("{word} is {size:g}. Allowed: above 0, in m", word=stated, size=size))
     return size
 
 
@@ -202,9 +204,11 @@ def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: 
     by_corner = header.get(f"{axis}llcorner", math.nan) + size / 2.0
     middle = header.get(f"{axis}llcenter", by_corner)
     if abs(by_corner - middle) > ROUNDED * size:
-        _refuse(path, f"{axis}llcorner and {axis}llcenter contradict each other. Remove one of them")
+        words = template("{axis}llcorner and {axis}llcenter contradict each other. Remove one of them")
+        _refuse(path, Message(words, axis=axis))
     if not math.isfinite(middle):
-        _refuse(path, f"The header has no finite {axis}llcorner and no {axis}llcenter. Add the one in m")
+        words = template("The header has no finite {axis}llcorner and no {axis}llcenter. Add the one in m")
+        _refuse(path, Message(words, axis=axis))
     return middle
 
 
@@ -235,18 +239,18 @@ def _read_cells(path: str | Path, text: str, first: int, counts: tuple[int, int]
 
 def _refuse_number(path: str | Path, count: int, counts: tuple[int, int]) -> NoReturn:
     """Raise an error for a file that has `count` values instead of columns × rows."""
-    _refuse(
-        path,
-        f"The file has {count} values. Allowed: ncols × nrows = {counts[0]} × {counts[1]} = {counts[0] * counts[1]}. "
-        "Export it again",
+    words = template(
+        "The file has {count} values. Allowed: ncols × nrows = {columns} × {rows} = {cells}. Export it again"
     )
+    columns, rows = counts
+    _refuse(path, Message(words, count=count, columns=columns, rows=rows, cells=columns * rows))
 
 
-def _where(text: str, first: int, cell: int) -> str:
+def _where(text: str, first: int, cell: int) -> Message:
     """Text "line …, column …" for the value with this index in the file, counted from 0."""
     for line, words in enumerate(map(str.split, text[first:].split("\n")), start=text.count("\n", 0, first) + 1):
         if cell < len(words):
-            return f"line {line}, column {cell + 1}"
+            return Message("line {line}, column {column}", line=line, column=cell + 1)
         cell -= len(words)
     raise AssertionError(cell)
 
@@ -314,7 +318,7 @@ def _require_each_once(
     rows: Sequence[CsvRow],
     of_x: tuple[FloatArray, npt.NDArray[np.intp]],
     of_y: tuple[FloatArray, npt.NDArray[np.intp]],
-    action: str,
+    action: Message,
 ) -> None:
     """Reject a table of a grid in which a place is missing or occurs twice, or whose rows are on no grid."""
     (x, i), (y, j) = of_x, of_y

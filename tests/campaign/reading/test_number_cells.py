@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
 from skisnow import analyse, results_dict, write_reference
+from skisnow._support.messages import Message
 from skisnow._support.spreadsheet_text import is_number, number
 from skisnow.campaign import Problem, check_campaign, read_campaign
 from skisnow.campaign.problems import error
@@ -67,7 +68,15 @@ def test_every_number_in_double_precision_can_be_written_in_full() -> None:
 @pytest.mark.parametrize("length", [200, 201, 30_000])
 def test_a_long_cell_is_kept_and_its_sentence_is_short(length: int) -> None:
     cell = "9" * length
-    problem = error("not_a_number", "shear.csv", row=3, column="depth_mm", value=cell, allowed="a number", action="")
+    problem = error(
+        "not_a_number",
+        "shear.csv",
+        row=3,
+        column="depth_mm",
+        value=cell,
+        allowed=Message("a number"),
+        action=Message(""),
+    )
     assert problem.value == cell
     assert str(problem).count("9") == 200
     assert ("…" in str(problem)) is (length > 200)

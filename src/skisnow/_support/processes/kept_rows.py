@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
+from ..messages import Message
 from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_sound_pages
 from ..staging import cannot_write
 from ..user_files.json_text import own_json
@@ -115,7 +116,7 @@ class KeptRows:
         """Entries that describe the batch, such as its fingerprint, by name."""
         entries = dict(self._run_query("select name, value from about"))
         if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
-            raise _damage_error(self.path, "the description of the batch has changed")
+            raise _damage_error(self.path, Message("the description of the batch has changed"))
         return entries
 
     def add(self, rows: Iterable[NumberedText]) -> int:
@@ -161,7 +162,7 @@ class KeptRows:
         """Numbers and JSON texts of rows chosen by SQL; a damage error if a checksum does not match."""
         for number, text, checksum in self._run_query(f"select number, row, checksum from rows {which}", *parameters):
             if not isinstance(text, str) or checksum != _checksum(number, text):
-                raise _damage_error(self.path, f"the row of point {number + 1} has changed")
+                raise _damage_error(self.path, Message("the row of point {point} has changed", point=number + 1))
             yield number, text
 
     def _run_query(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
@@ -223,10 +224,10 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
         if place_reason(error) is not None:
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
         damage = None if database is None else first_damage(database)
-        raise _damage_error(path, damage or str(error)) from error
+        raise _damage_error(path, Message("{reason}", reason=damage or error)) from error
 
 
-def _damage_error(path: Path | None, why: str) -> ParameterError:
+def _damage_error(path: Path | None, why: Message) -> ParameterError:
     """Error that a file of finished points is damaged or something else, with the reason."""
     return ParameterError(
         "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute its points again, "

@@ -205,8 +205,9 @@ def _read_all(files: CampaignFiles, progress: Callable[[str], None] | None) -> _
     names = campaign.names()
     for name in sorted(names):  # a file whose name differs by case would not be read
         if name not in CAMPAIGN_FILES and name.lower() in raw.absent:
-            action = Message("Rename it to {name}.", name=name.lower())
-            raw.problems.append(error("unreadable_file", name, value=name, allowed=name.lower(), action=action))
+            right = Message("{name}", name=name.lower())
+            action = Message("Rename it to {name}.", name=right)
+            raw.problems.append(error("unreadable_file", name, value=name, allowed=right, action=action))
     other = [name for name in sorted(names) if names[name] and name not in (*CAMPAIGN_FILES, ATTACHMENTS, *raw.hashes)]
     raw.unread = (*(name for name in other if not name.startswith((".", "~$"))), *campaign.unread)
     hashes = {name: sha256 for name, sha256 in raw.hashes.items() if name not in campaign.of_sheets}

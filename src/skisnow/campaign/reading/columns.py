@@ -30,7 +30,7 @@ class Rows:
     key: Sequence[str]
     problems: list[Problem]
 
-    def refuse(self, code: str, index: int, column: str, value: str, allowed: str, action: str) -> None:
+    def refuse(self, code: str, index: int, column: str, value: str, allowed: Message, action: Message) -> None:
         """Add an error for the cell of a column in the row with this index, with its file, line and experiment."""
         row, name = self.line[index], self.key[index].strip() or None
         self.problems.append(
@@ -204,11 +204,13 @@ class Table:
         """Count the rows."""
         return len(self.row)
 
-    def error(self, row: int, code: str, column: str, value: str, allowed: str, action: str) -> Problem:
+    def error(self, row: int, code: str, column: str, value: str, allowed: Message, action: Message) -> Problem:
         """Error, to be reported by the caller, for the cell of a column in the row with this index."""
         return error(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 
-    def warning(self, row: int, code: str, column: str | None, value: str, allowed: str, action: str) -> Problem:
+    def warning(
+        self, row: int, code: str, column: str | None, value: str, allowed: Message, action: Message
+    ) -> Problem:
         """Warning, to be reported by the caller, for the cell of a column in the row with this index."""
         return warning(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 

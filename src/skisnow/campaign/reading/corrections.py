@@ -32,7 +32,7 @@ class Correction(AppliedCorrection):
         """Correction without its line, for the records of the campaign."""
         return AppliedCorrection(*(getattr(self, field.name) for field in fields(AppliedCorrection)))
 
-    def mismatch(self, column: str, value: str, allowed: str) -> Problem:
+    def mismatch(self, column: str, value: str, allowed: Message) -> Problem:
         """Error for a column of corrections.csv whose value in this correction does not match the raw file."""
         mismatch = partial(error, "correction_mismatch", CORRECTIONS.file, row=self.line, column=column)
         place = {"file": self.file, "row": self.row}
@@ -57,9 +57,9 @@ def corrections_by_file(table: Table, problems: list[Problem]) -> dict[str, dict
         old, new, who, when, why = rest
         correction = Correction(file, experiment, int(row), column, old, new, who, when, why, line)
         if file not in files:
-            problems.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
+            problems.append(correction.mismatch("file", file, Message("one of {files}", files=files)))
         elif row != int(row):
-            problems.append(correction.mismatch("row", f"{row:g}", "a whole number, the file's line"))
+            problems.append(correction.mismatch("row", f"{row:g}", Message("a whole number, the file's line")))
         else:
             sorted_by_file.setdefault(file, {}).setdefault(int(row), []).append(correction)
     return sorted_by_file
@@ -121,4 +121,5 @@ class Corrector:
             with_comma = self._mark == "," and is_number_column and is_number(correction.new, ".")
             cells[position] = correction.new.replace(".", ",") if with_comma else correction.new
         else:
-            self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {current!r}"))
+            allowed = Message("what stands there: {current!r}", current=current)
+            self._problems.append(correction.mismatch("old", correction.old, allowed))

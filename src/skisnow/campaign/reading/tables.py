@@ -50,8 +50,8 @@ def read_table(form: TableForm, files: RawFiles, progress: Callable[[str], None]
     text = files.csv_text(form)
     if form.file in files.absent:
         for corrections in files.corrections.get(form.file, {}).values():
-            problems = (wrong.mismatch("file", wrong.file, "a readable file of this campaign") for wrong in corrections)
-            files.problems.extend(problems)
+            allowed = Message("a readable file of this campaign")
+            files.problems.extend(wrong.mismatch("file", wrong.file, allowed) for wrong in corrections)
     if text is None:
         return None
     reading: TableReading | None = None

@@ -43,7 +43,13 @@ class TomlValues:
         return f"{self.path}.{key}" if self.path else key
 
     def refuse(
-        self, key: str, allowed: str, action: str = "", *, code: str = "bad_toml", value: object = _MISSING
+        self,
+        key: str,
+        allowed: Message,
+        action: Message | None = None,
+        *,
+        code: str = "bad_toml",
+        value: object = _MISSING,
     ) -> None:
         """Add an error for a key (default: with its value, and the advice to correct the key) to the problems."""
         action = action or Message("Correct {key}.", key=key)
@@ -53,7 +59,7 @@ class TomlValues:
             error(code, self.file, column=self.path_of(key), value=text, allowed=allowed, action=action)
         )
 
-    def refuse_unknown(self, key: str, value: object, words: Iterable[str], allowed: str, action: str) -> None:
+    def refuse_unknown(self, key: str, value: object, words: Iterable[str], allowed: Message, action: Message) -> None:
         """Add an error for an unknown word at a key, with the most similar of the known words."""
         near = difflib.get_close_matches(shown_value(value, 200, str).lower(), list(words), n=1)
         meant = [Message("Did you mean {similar}?", similar=near[0])] if near else []

@@ -107,7 +107,7 @@ def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
     except (ContentError, OSError) as failure:
         what = failure.strerror or str(failure) if isinstance(failure, OSError) else str(failure)
         value, _, advice = what.partition(". ")
-        action = advice or "Save it again, or as CSV."
+        action = Message("{advice}", advice=advice) if advice else Message("Save it again, or as CSV.")
         allowed = Message("a workbook (.xlsx) with a sheet for each table")
         workbooks.problems.append(error("unreadable_file", workbook, value=value, allowed=allowed, action=action))
         return

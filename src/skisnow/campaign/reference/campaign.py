@@ -144,7 +144,9 @@ def reference_campaign(
     """
     # a caller without types may give anything
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:  # type: ignore[redundant-expr]
-        raise ParameterError(f"reference_campaign: the seed is {seed!r}; it must be an integer of at least 0")
+        raise ParameterError("reference_campaign: the seed is {seed!r}; it must be an integer of at least 0").tag(
+            "out_of_range", seed=seed
+        )
     # One stream per kind of draw, so that none depends on how many numbers another took.
     spots, spread, readings, shear, beside, back, turn, wait = np.random.default_rng(seed).spawn(8)
     snow_hardness = draws.snow_hardness(spread, noise)
@@ -214,9 +216,9 @@ def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = Fal
     there = [name for name in _CAMPAIGN_FILES if (folder / name).exists()]
     if there:
         raise OutputError(
-            f"{folder} already holds a campaign ({', '.join(there)}); nothing was written. "
-            "Choose a folder without one, or remove it first."
-        )
+            "{folder} already holds a campaign ({files}); nothing was written. Choose a folder without one, or remove "
+            "it first."
+        ).tag("not_empty", folder=folder, files=there)
     density, cone = drawn.density, drawn.drop_cone
     files = {
         "penetration.csv": _penetration_csv(drawn),

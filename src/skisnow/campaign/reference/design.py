@@ -166,9 +166,11 @@ class ReferenceNoise:
         for name in (entry.name for entry in fields(self)):
             value = getattr(self, name)
             if not (np.isfinite(value) and (value >= 0 or name == "layering_mean")):
-                raise ParameterError(f"ReferenceNoise: {name} is {value!r}; it must be a finite number, 0 or above")
+                raise ParameterError("ReferenceNoise: {name} is {value!r}; it must be a finite number, 0 or above").tag(
+                    "out_of_range", name=name, value=value
+                )
         if abs(self.layering_mean) > 0.4:
             raise ParameterError(
-                f"ReferenceNoise: layering_mean is {self.layering_mean!r}; it must be at most 0.4 in size, "
-                "or the force falls with depth in some series"
-            )
+                "ReferenceNoise: layering_mean is {mean!r}; it must be at most 0.4 in size, or the force falls with "
+                "depth in some series"
+            ).tag("out_of_range", mean=self.layering_mean)

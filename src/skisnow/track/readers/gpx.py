@@ -103,7 +103,7 @@ class _Reader:
         """Reject the file: it declares an entity, which could expand without limit."""
         self._refuse(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
 
-    def _refuse(self, value: str, allowed: str) -> NoReturn:
+    def _refuse(self, value: str, allowed: Message) -> NoReturn:
         """Raise an error for a file that cannot be read."""
         raise track_error("unreadable_file", self._name, allowed, value=value)
 
@@ -170,10 +170,11 @@ def _read_points(text: str, name: str) -> list[_Point]:
     try:
         parser.Parse(text.lstrip(), True)
     except expat.ExpatError as error:
-        raise track_error("unreadable_file", name, "GPX 1.0, GPX 1.1 or TCX", value=str(error)) from error
+        raise track_error("unreadable_file", name, Message("GPX 1.0, GPX 1.1 or TCX"), value=str(error)) from error
     if not reader.points and (reader.others or reader.root not in (_POINT[0], _TCX_POINT[0])):
         counted = ", ".join(f"{count} {element}" for element, count in reader.others.items())
-        allowed = " > ".join(_TCX_POINT if reader.root == _TCX_POINT[0] else _POINT)
+        path = " > ".join(_TCX_POINT if reader.root == _TCX_POINT[0] else _POINT)
+        allowed = Message("{path}", path=path)
         action = Message("The file has no recorded track. Waypoints, routes and courses are not read.")
         raise track_error("unreadable_file", name, allowed, action, value=counted or f"<{reader.root}>")
     return reader.points

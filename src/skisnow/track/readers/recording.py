@@ -88,8 +88,8 @@ class TrackProblem:
     place: str | None
     column: str | None
     value: str | None
-    allowed: str
-    action: str
+    allowed: Message
+    action: Message
 
     def __str__(self) -> str:
         """The problem in one line with its code."""
@@ -114,11 +114,14 @@ class TrackProblem:
         return Message("{place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=self.value)
 
 
+_EXPORT_AGAIN: Final = Message("Correct the file, or export it again.")
+
+
 def track_error(
     code: str,
     file: str,
-    allowed: str,
-    action: str = Message("Correct the file, or export it again."),
+    allowed: Message,
+    action: Message = _EXPORT_AGAIN,
     *,
     place: str | None = None,
     column: str | None = None,

@@ -22,7 +22,7 @@ from .recording import FASTEST_NUMBER, Recording, is_not_finite, track_error
 
 SCALES: Final = {"GPST": "GPS", "UTC": "UTC", "JST": "JST"}
 PLACES: Final = ("latitude", "longitude", "height")
-_NAMED: Final = "latitude(deg), longitude(deg), height(m)"
+_NAMED: Final = Message("{columns}", columns="latitude(deg), longitude(deg), height(m)")
 HEADER: Final = re.compile(
     r"^%[ \t]*+(?:(GPST|UTC|JST)[ \t,;]*+|[,;][ \t,;]*+)?(latitude|x-ecef|e-baseline).*", re.MULTILINE | re.IGNORECASE
 )
