@@ -23,6 +23,7 @@ from starlette.responses import FileResponse, RedirectResponse, Response
 from .._support.environment import load_certificate
 from .._support.errors import ParameterError
 from .._support.messages import languages
+from .._support.processes.starting import load_for_workers
 from .elements import KEEPING, LANGUAGE, SCRIPT, STYLES, add_error_pages, log_to
 from .guard import Access, Guard, is_loopback
 from .pages import INNER, PAGES
@@ -108,6 +109,7 @@ def serve(
             if not is_loopback(host):
                 for line in lines_for_others(addresses, secure=secure):
                     tell(line)
+            load_for_workers()  # the first upload finds them ready
 
         _AnnouncingServer(config, begun).run(sockets=[listener])
 

@@ -24,5 +24,14 @@ def worker_context() -> ForkServerContext | SpawnContext:
     return context
 
 
+def load_for_workers() -> None:
+    """Begin to load skisnow for later workers in the background, where they are forks; elsewhere do nothing."""
+    if sys.platform == "linux":
+        from multiprocessing import forkserver
+
+        worker_context()
+        forkserver.ensure_running()
+
+
 def _is_own(module: str) -> bool:
     return module.partition(".")[0] == "skisnow" and not module.endswith("__main__")
