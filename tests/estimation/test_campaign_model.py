@@ -15,7 +15,7 @@ from skisnow.estimation.errors_in_depth import volume_factor
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.parts import seating_change
 from skisnow.estimation.readings import Readings, ReadingUncertainty
-from skisnow.estimation.spread_groups import _two_classes, fit_in_groups, noisier_series_warning
+from skisnow.estimation.spread_groups import _two_classes, fit_in_groups, noisier_series, noisier_series_warning
 from skisnow.geometry import Disc, SkiPiece, Tool
 
 from .conftest import MakeCampaign
@@ -210,12 +210,12 @@ def test_noisier_sites_have_their_own_spreads() -> None:
     assert np.median(apart.half_width(0)[30:]) > 2.0 * np.median(apart.half_width(0)[:30])
 
 
-def mixed_series(factor: float, *, count: int = 40, seed: int = 1) -> Readings:
-    """Every other series of one site and tool has ``factor`` times the seating and scatter."""
+def mixed_series(factor: float, *, count: int = 40, seed: int = 1, noisier: np.ndarray | None = None) -> Readings:
+    """Some series of one site and tool, by default every other, have ``factor`` times the seating and scatter."""
     quiet, _ = simulated(count, seed=seed)
     loud, _ = simulated(count, seating_sd=factor * 5e-5, scatter=factor * 0.02, seed=seed + 1000)
-    depth = np.where(np.arange(count)[:, None] % 2, loud.penetration_depth.reshape(count, 7),
-                     quiet.penetration_depth.reshape(count, 7))  # fmt: skip
+    mask = np.arange(count) % 2 == 1 if noisier is None else noisier
+    depth = np.where(mask[:, None], loud.penetration_depth.reshape(count, 7), quiet.penetration_depth.reshape(count, 7))
     return pressed(TOOL, ANGLE, depth, LOADS)
 
 
@@ -233,6 +233,18 @@ def test_noisier_series_among_quieter_ones_have_their_own_spreads() -> None:
     (warning,) = noisier_series_warning(model, [f"P{number}" for number in range(40)])
     assert warning.fields["n"] == (model.group == 1).sum()
     assert warning.fields["first"][:2] == [f"P{number}" for number in np.flatnonzero(model.group == 1)[:2]]
+
+
+def test_offsets_that_come_from_the_prior_alone_do_not_count_for_the_classes() -> None:
+    readings = mixed_series(2.5, seed=3)
+    model = fit_campaign(readings, hardness_at_largest_load(readings, DEFINITIONS["H_V"]), UNCERTAINTY)
+    seating2, covariance = model.spreads.seating2[0], model.covariance.copy()
+    covariance[:32, 2, 2] = seating2
+    share = 1.0 - covariance[:, 2, 2] / seating2
+    assert share[32:].min() > 0.3
+    sums = [(model.misfit, model.free), (share * model.offset**2 / seating2, share**2)]
+    noisier = noisier_series(replace(model, covariance=covariance))
+    np.testing.assert_array_equal(noisier, _two_classes(sums)[0] > 0.5)
 
 
 @pytest.mark.parametrize("noisier", [6, 15, 34])
@@ -258,6 +270,11 @@ def test_two_classes_are_a_maximum_of_the_likelihood(noisier: int) -> None:
     assert gain == pytest.approx(2.0 * np.log(mixed / one).sum(), rel=1e-4)
     assert factor == pytest.approx(math.sqrt(noisy[0] / quiet[0]), rel=1e-4)
     assert np.mean((probability > 0.5) == first) > 0.8
+
+
+@pytest.mark.parametrize(("loud", "grouped_by"), [(2, "campaign"), (6, "scatter"), (34, "scatter"), (38, "campaign")])
+def test_a_few_series_that_scatter_otherwise_are_outliers_and_no_class(loud: int, grouped_by: str) -> None:
+    assert in_groups(mixed_series(8.0, noisier=np.arange(40) < loud)).grouped_by == grouped_by
 
 
 @pytest.mark.parametrize("count", [1, 2, 10, 40])

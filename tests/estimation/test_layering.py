@@ -12,10 +12,11 @@ from skisnow._support.errors import FieldDataError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.campaign import Problem, reference_campaign
 from skisnow.cli.shell import json_schema
+from skisnow.estimation import layering as layering_module
 from skisnow.estimation import quality_flags
 from skisnow.estimation.campaign_model import fit_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimation.layering import layered, layering
+from skisnow.estimation.layering import growing_hardness, layered, layering
 from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.estimation.screening import hardness_outliers, screened_penetration
 from skisnow.estimation.weather import weather_at_tests, weather_results
@@ -145,6 +146,21 @@ def test_an_exact_series_with_an_offset_gives_back_its_exponent(kappa: float) ->
     readings = layered_series(hardness, kappa, 0.0, 3e-5)
     exponent, _, _ = layering(readings, 1.2 * hardness, ReadingUncertainty(1e-7))
     np.testing.assert_allclose(2.0 / exponent - 2.0, kappa, atol=1e-4)
+
+
+def test_a_fit_that_goes_on_moves_a_growth_by_less_than_a_hundredth_of_its_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    readings = layered_series(np.geomspace(2e7, 3e10, 60), 0.3, 0.02, 1e-5)
+    H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    found = []
+    for settled, rounds in ((layering_module._SETTLED, layering_module._ITERATIONS), (1e-8, 4000)):
+        monkeypatch.setattr(layering_module, "_SETTLED", settled)
+        monkeypatch.setattr(layering_module, "_ITERATIONS", rounds)
+        found.append(np.log1p(growing_hardness(readings, H_V, ReadingUncertainty(3e-6)).growth_interval))
+    (first, first_half), (last, last_half) = ((ends.mean(axis=1), np.diff(ends)[:, 0] / 2.0) for ends in found)
+    np.testing.assert_allclose(first_half, last_half, rtol=0.01)
+    assert np.max(np.abs(first - last) / last_half) < 0.004  # 2.57 errors are the half of an interval
 
 
 def test_flags_need_a_hardness_in_any_unit_of_force() -> None:
