@@ -19,7 +19,7 @@ PITS = {LONG: "DB_SSA_2S16.csv", SHORT: "DB_SSA_1S17.csv"}
 
 
 def test_a_recording_built_by_hand(tmp_path: Path) -> None:
-    path = tmp_path / "S31M0067_20190302.pnt"
+    path = tmp_path / "S31M0067_20191224.pnt"
     path.write_bytes(built([0, 40, -4, 32767]))
     profile = read_snow_micro_pen(path)
     # 0.004 mm a sample, 0.0025 N a count; both stored in single precision, 6e-8
@@ -28,7 +28,7 @@ def test_a_recording_built_by_hand(tmp_path: Path) -> None:
     assert (profile.latitude_deg, profile.longitude_deg, profile.height) == (-45.5, 170.25, 2120.0)
     assert (profile.name, profile.comment) == ("S31M0067", "near hut!")
     assert profile.tip_diameter == pytest.approx(0.005)
-    assert profile.recorded_on == date(2019, 3, 2)
+    assert profile.recorded_on == date(2019, 12, 24)  # not that of the clock
 
 
 @pytest.mark.parametrize(
@@ -151,9 +151,15 @@ def test_a_missing_file_is_reported(tmp_path: Path) -> None:
         (">f", 64, 2e4, "speed_mm_per_s"),
         (">i", 376, -5000, "tip_diameter_um"),
         (">i", 376, 2**31 - 1, "tip_diameter_um"),
+        (">i", 376, 100_001, "tip_diameter_um"),
         (">h", 386, -1, "instrument_length_mm"),
+        (">h", 386, 10_001, "instrument_length_mm"),
         (">f", 6, math.nan, "sample_distance_mm"),
+        (">f", 6, 0.9e-4, "sample_distance_mm"),
+        (">f", 6, 1.1, "sample_distance_mm"),
         (">f", 10, math.inf, "force_per_count"),
+        (">f", 10, 0.9e-6, "force_per_count"),
+        (">f", 10, 1.1, "force_per_count"),
     ],
 )
 def test_numbers_that_no_instrument_has(tmp_path: Path, form: str, offset: int, value: float, name: str) -> None:
@@ -163,3 +169,21 @@ def test_numbers_that_no_instrument_has(tmp_path: Path, form: str, offset: int, 
     path.write_bytes(data)
     with pytest.raises(FieldDataError, match=f"found '{name} "):
         read_snow_micro_pen(path)
+
+
+@pytest.mark.parametrize(
+    ("form", "offset", "limits"),
+    [
+        (">f", 6, (1.001e-4, 1.0)),
+        (">f", 10, (1.001e-6, 1.0)),
+        (">f", 64, (0.0, 1000.0)),
+        (">i", 376, (0, 100_000)),
+        (">h", 386, (0, 10_000)),
+    ],
+)
+def test_numbers_up_to_the_limits_are_read(tmp_path: Path, form: str, offset: int, limits: tuple[float, float]) -> None:
+    for value in limits:
+        data = bytearray(built([100, 200, 300]))
+        struct.pack_into(form, data, offset, value)
+        (tmp_path / "a.pnt").write_bytes(data)
+        assert len(read_snow_micro_pen(tmp_path / "a.pnt").force) == 3

@@ -9,8 +9,9 @@ from scipy import optimize, stats
 
 import skisnow
 from skisnow.campaign import ReferenceNoise, reference_campaign
+from skisnow.estimation import campaign_fit
 from skisnow.estimation.campaign_fit import Priors
-from skisnow.estimation.campaign_model import CampaignModel, fit_campaign
+from skisnow.estimation.campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
 from skisnow.estimation.errors_in_depth import volume_factor
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.parts import seating_change
@@ -189,6 +190,26 @@ def test_exact_series_give_back_offset_and_hardness(tool: Tool, angle_deg: float
     change = seating_change(readings, model.offset)
     np.testing.assert_allclose(as_read * (1.0 + change), H, rtol=0.01)
     assert (np.sign(change) == np.sign(offset)).all()
+
+
+def test_errors_of_the_load_alone_give_those_of_a_weighted_mean() -> None:
+    """Without other errors each reading gives ln H = ln F - ln V(e) ± u_F/F: the variance is 1/Σ (F/u_F)²."""
+    readings, _ = simulated(8, seating_sd=0.0, layering=0.0, scatter=0.0)
+    H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    exact = replace(DEFAULT_PRIORS, seating=1e-10, layering=1e-5, mean_layering=1e-5, scatter=1e-5)
+    model = fit_campaign(readings, H, ReadingUncertainty(1e-9, 5.0), priors=exact)
+    np.testing.assert_allclose(model.covariance[:, 0, 0], 1.0 / np.sum((LOADS / 5.0) ** 2), rtol=0.01)
+
+
+def test_more_rounds_hardly_move_the_spreads(monkeypatch: pytest.MonkeyPatch) -> None:
+    readings, _ = simulated(30)
+    H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    first = fit_campaign(readings, H, UNCERTAINTY)
+    for name, value in (("_ROUNDS", 400), ("_SPREADS_SETTLED", 1e-9), ("_SCATTER_SETTLED", 1e-9)):
+        monkeypatch.setattr(campaign_fit, name, value)
+    settled = fit_campaign(readings, H, UNCERTAINTY)
+    np.testing.assert_allclose(first.log_hardness, settled.log_hardness, atol=1e-3)
+    np.testing.assert_allclose(np.ravel(first.spreads), np.ravel(settled.spreads), rtol=0.02)
 
 
 def test_noisier_sites_have_their_own_spreads() -> None:

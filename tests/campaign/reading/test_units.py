@@ -108,6 +108,19 @@ def test_depths_that_look_like_cm_are_rejected(write_campaign: WriteCampaign) ->
     assert problems(write_campaign(campaign(loads, toml='units.Tiefe = "cm"'))) == []
 
 
+@pytest.mark.parametrize(("largest", "refused"), [(0.141, True), (1.41, False)])
+def test_depth_under_the_largest_load_of_the_loading_decides(
+    write_campaign: WriteCampaign, largest: float, refused: bool
+) -> None:
+    """The depths under smaller loads and of the unloading would decide the opposite."""
+    other = 1.41 if refused else 0.141
+    rows = f"1,A,ski,30,98.1,{other},\n1,A,ski,30,490.3,{largest},\n1,A,ski,30,294.2,{other},\n"
+    files = campaign(f"{rows}1,A,ski,30,490.3,{other},unloading\n1,A,ski,30,98.1,{other},unloading\n")
+    files["penetration.csv"] = files["penetration.csv"].replace("Tiefe\n", "Tiefe,branch\n")
+    found = [each.column for each in problems(write_campaign(files)) if each.code == "unit_missing"]
+    assert found == (["depth_mm"] if refused else [])
+
+
 @pytest.mark.parametrize(
     ("loads", "refused"),
     [

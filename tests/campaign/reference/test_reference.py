@@ -11,6 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 from tests.present import present
 
 import skisnow
@@ -298,6 +299,22 @@ def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:
         write_reference(tmp_path / name, seed=3)
     for path in (tmp_path / "a").iterdir():
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
+
+
+def test_the_numbers_of_a_seed_are_those_of_published_results(tmp_path: Path) -> None:
+    """Sums of all columns of seed 3 in 2026: a campaign is named by its seed."""
+    write_reference(tmp_path, seed=3, turning_angles=True, creep=True)
+    sums = {
+        "penetration.csv": {"edge_angle_deg": 77970.0, "depth_mm": 3669.14, "depth_after_mm": 607.43},
+        "shear.csv": {"edge_angle_deg": 41100.0, "depth_mm": 3934.3, "moment_Nm": 7425.57,
+                      SNOW_DENSITY: 162555.0, "turning_angle_deg": 18.8087},
+        "density.csv": {SNOW_DENSITY: 22172.0},
+        "drop_cone.csv": {DROP_CONE_DEPTH: 1321.2},
+    }  # fmt: skip
+    for file, columns in sums.items():
+        rows = rows_of(tmp_path / file)
+        for column, expected in columns.items():
+            assert sum(float(row[column] or 0.0) for row in rows) == pytest.approx(expected, rel=1e-5), (file, column)
 
 
 @pytest.mark.parametrize("name", ["campaign.toml", "shear.csv", "drop_cone.csv", "corrections.csv"])

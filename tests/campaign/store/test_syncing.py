@@ -22,6 +22,7 @@ from skisnow.campaign.store import (
     replay_journal,
     sync,
 )
+from skisnow.campaign.store.conflict import entry_index
 from skisnow.campaign.store.engine import writing
 from skisnow.cli import main
 
@@ -357,3 +358,12 @@ def test_conflicts_in_the_terminal(ada: Laptop, bo: Laptop, tmp_path: Path, caps
     with pytest.raises(SystemExit):
         main([*bos, "--keep", f"{id_}=mine"])
     assert "ID=there" in capsys.readouterr().err
+
+
+def test_an_entry_without_a_uid_is_damaged(ada: Laptop, group: Store) -> None:
+    damaged = ada.journals.begin(TOML, who=ada.who)
+    with writing(ada.store.engine) as connection:
+        connection.exec_driver_sql("UPDATE journal_entry SET uid = NULL")
+        with raises(StoreError, "damaged"):
+            entry_index(connection, damaged)
+    assert sync(ada.store, group).n_entries_given == 0
