@@ -15,11 +15,14 @@ from skisnow.campaign import (
     QUALITY_FLAGS,
     Campaign,
     PenetrationTests,
+    Problem,
     ShearTests,
     flag_problems,
     screen_penetration,
     screen_shear,
 )
+from skisnow.campaign.problems import lines_of, warning
+from skisnow.campaign.records import UnloadingReadings
 from skisnow.campaign.screening import reading_at_largest_load
 from skisnow.geometry import Disc, GeometryForm, LyingCylinder, SkiPiece
 
@@ -252,3 +255,46 @@ def test_creep_beyond_the_gauge_and_a_share_of_the_depth(depth: float, after: fl
     assert not any(mask[0] for mask in masks.values())
     problems = flag_problems(campaign, masks, {})
     assert [(each.code, each.row, each.column) for each in problems] == [("creeps", 6, "depth_after_mm")] * len(codes)
+
+
+@pytest.mark.parametrize(
+    ("back", "code"),
+    [
+        ([(140.5, 2.9), (70.5, 2.5)], None),
+        ([(210.5, 3.0), (140.5, 2.9)], None),  # again under the largest load
+        ([(210.5, 3.0), (210.5, 2.9)], "unloading_not_falling"),
+        ([(140.5, 2.9), (150.5, 2.5)], "unloading_not_falling"),
+        ([(220.5, 2.9), (70.5, 2.5)], "unloading_not_falling"),
+        ([(140.5, 3.01), (70.5, 3.02)], None),  # a step of the gauge each
+        ([(140.5, 3.011), (70.5, 2.5)], "unloading_sinks"),
+        ([(140.5, 2.9), (70.5, 2.92)], "unloading_sinks"),
+    ],
+)
+def test_flags_of_the_unloading(back: Series, code: str | None) -> None:
+    """The series before ends under a smaller load and less deep; that does not count."""
+    campaign, readings = campaign_of(GOOD, GOOD), [(70.5, 1.0), *back]
+    unloading = UnloadingReadings(
+        first=np.array([0, 1, 1 + len(back)]), load=np.array([load for load, _ in readings]),
+        penetration_depth=np.array([depth for _, depth in readings]) * 1e-3, row=np.arange(len(readings)) + 8,
+    )  # fmt: skip
+    tests = dataclasses.replace(present(campaign.penetration), unloading=unloading)
+    campaign = dataclasses.replace(campaign, penetration=tests)
+    masks = screen_penetration(campaign)
+    assert [[name for name in CODES if masks[name][index]] for index in range(2)] == [[], [code] if code else []]
+    assert [problem.code for problem in flag_problems(campaign, masks, {})] == ([code] if code else [])
+
+
+def repeated(count: int, column: str | None) -> list[Problem]:
+    return [warning("odd", "a.csv", row=n + 2, column=column, value="x", allowed="", action="") for n in range(count)]
+
+
+@pytest.mark.parametrize(("column", "place"), [("load_N", "a.csv, column load_N"), (None, "a.csv")])
+def test_many_problems_of_a_kind_are_counted(column: str | None, place: str) -> None:
+    """Ten are shown, an eleventh alone too, and of more the number and the last row."""
+    for count, shown in ((10, 10), (11, 11), (12, 11)):
+        lines = lines_of(repeated(count, column))
+        assert len(lines) == shown
+    assert {name: str(lines[-1].fields[name]) for name in ("place", "count", "row")} == {
+        "place": place, "count": "2", "row": "13",
+    }  # fmt: skip
+    assert len(lines_of([*repeated(12, column), *repeated(12, "other")])) == 22

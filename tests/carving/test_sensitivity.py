@@ -394,6 +394,15 @@ def test_a_neighbour_has_the_strength_of_its_parameter() -> None:
     assert present(loaded).output("grip_utilisation") == pytest.approx(math.sqrt(1.01) * utilisation, rel=1e-6)
 
 
+def test_everyday_parameters_are_those_of_turn_snow_and_outline() -> None:
+    case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
+    assert derivatives(carve(read_ski("carver"), snow(0.21), **case)).everyday_parameters == (
+        "edge_angle_deg", "load_N", "moment_Nm", "unloading_ratio", "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2",
+        "ski.tip_width_mm", "ski.waist_width_mm", "ski.tail_width_mm", "ski.camber_mm",
+        "edit.sidecut_depth", "edit.EI_N_m2", "edit.GJ_N_m2",
+    )  # fmt: skip
+
+
 def test_what_has_no_derivative_is_rejected() -> None:
     case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
     found = carve(read_ski("slalom"), snow(0.21), **case)

@@ -174,6 +174,13 @@ def test_too_little_rebound_is_flagged_and_tells_a_least_ratio(make_campaign: Ma
     assert found.snow("A").unloading_ratio is None
 
 
+@pytest.mark.parametrize(("ratio", "below"), [(115.0, False), (127.0, True)])
+def test_rebound_of_a_step_of_the_gauge_is_the_limit(make_campaign: MakeCampaign, ratio: float, below: bool) -> None:
+    """Down to a quarter of the load the loading has 3/4 · 400/(0.02 · 200 · 62) = 1.21 mm: 121 steps of 0.01 mm."""
+    unloading = present(analysed(make_campaign, flat(ratio=ratio)).penetration).unloading
+    assert unloading.below_step.tolist() == [below]
+
+
 def test_one_reading_gives_a_ratio_without_an_interval(make_campaign: MakeCampaign) -> None:
     row = analysed(make_campaign, edged()[:5]).results["penetration"]["experiments"][0]
     assert row["unloading_ratio"] == pytest.approx(RATIO, rel=1e-9)

@@ -19,7 +19,7 @@ import skisnow.campaign.store.migrations
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
-from skisnow.campaign.store.folder import campaign_name, changed_files, unsafe_because
+from skisnow.campaign.store.folder import _sync_folder, campaign_name, changed_files, unsafe_because
 from skisnow.campaign.store.migrations import alembic_config, downgrade, is_known, upgrade
 from skisnow.campaign.store.schema import APPLICATION_ID, REVISION, metadata
 
@@ -281,3 +281,12 @@ def test_the_next_migration_starts_from_a_form(tmp_path: Path) -> None:
     assert (names["revision"], names["down_revision"]) == ("9998", REVISION)
     assert callable(names["upgrade"])
     assert callable(names["downgrade"])
+
+
+def test_a_folder_that_was_flushed_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    handles: list[int] = []
+    monkeypatch.setattr(os, "fsync", handles.append)
+    _sync_folder(tmp_path)
+    (handle,) = handles
+    with pytest.raises(OSError, match="Bad file descriptor"):
+        os.fstat(handle)
