@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import jsonschema
@@ -18,7 +19,7 @@ from skisnow.track.read import read_track
 from skisnow.track.runs import Day, split_day, turning_points
 from skisnow.track.summary import TrackSummary, half_wavelength, summary_dict, track_summary
 from skisnow.track.track import Axes, Track
-from skisnow.track.turns import find_turns
+from skisnow.track.turns import _switch_time, find_turns
 from tests.coded import raises
 
 from .paths import NOISE, along, circle, track
@@ -119,6 +120,22 @@ def test_axis_out_of_the_slope_is_no_height() -> None:
     level = split(day([Leg(100, 10.0, 0.0)], height_noise=0.01, axes="file"))
     assert level.runs[0].descent is None
     assert "third axis" in level.remarks[0]
+    for heights in (day([RUN], axes="file"), day([Leg(100, 10.0, 0.0)], height_noise=0.01)):
+        assert split(heights).runs[0].descent == pytest.approx(heights.place[0, 2] - heights.place[-1, 2], abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("curvature", "time"),
+    [
+        ([0.1, 0.07, 0.04, 0.01, -0.02], 10.0 / 3.0),
+        ([0.1, np.nan, 0.04, 0.01, -0.02], 10.0 / 3.0),
+        ([0.0] * 5, 2.0),  # nowhere and everywhere: the middle
+        ([0.1, 0.09, 0.08, 0.07, 0.06], 2.0),  # beyond the end
+    ],
+)
+def test_turns_meet_where_a_line_through_the_curvatures_passes_0(curvature: list[float], time: float) -> None:
+    motion: Any = SimpleNamespace(time=10.0 + np.arange(6.0), curvature=np.array([0.2, *curvature]))
+    assert _switch_time(motion, 1, 5) - 11.0 == pytest.approx(time, abs=1e-9)
 
 
 def test_standing_still_has_no_run() -> None:

@@ -13,8 +13,15 @@ from skisnow import read_track
 from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.track.curvature import track_motion
-from skisnow.track.path_estimate import PathEstimate, estimate_path
-from skisnow.track.smoothing import MOST_IN_WINDOW, Resolution, parts, smooth_track, window_bounds
+from skisnow.track.path_estimate import PathEstimate, _vertical_speed, estimate_path
+from skisnow.track.smoothing import (
+    MOST_IN_WINDOW,
+    Resolution,
+    _weighted_velocities,
+    parts,
+    smooth_track,
+    window_bounds,
+)
 from skisnow.track.summary import summary_dict, track_summary
 from skisnow.track.track import Track
 from tests.coded import Coded, coded, raises
@@ -334,3 +341,29 @@ def test_recorded_speeds_have_no_interval() -> None:
     low, high = places["max_speed_interval_m_per_s"]
     assert low < places["max_speed_m_per_s"] < high
     assert places["runs"][0]["max_speed_interval_m_per_s"] is not None
+
+
+def test_the_acceleration_of_a_cubic_is_exact_where_points_of_a_dense_window_are_left_out() -> None:
+    found = Resolution.of_window(window=1.202, interval=1e-3, place_noise=1.0, rate_noise=None)
+    assert sum(found.offsets) != 0.0  # every third of 1,203 points
+    moments = [np.array(found.place_weights) @ np.array(found.offsets) ** power for power in range(4)]
+    assert moments == pytest.approx([0.0, 0.0, 2.0, 0.0], abs=1e-8)
+
+
+def test_velocities_weigh_by_the_square_of_their_stated_accuracy() -> None:
+    made = track(circle(15.0, 8.0))
+    made = replace(made, velocity=np.ones((len(made), 3)), speed_sd=np.resize([0.1, 0.2, np.nan], len(made)))
+    weight = present(_weighted_velocities(made, np.ones(len(made), bool))).weight
+    assert (weight[0] / weight[1], weight[2]) == (pytest.approx(4.0), 1.0)
+
+
+def test_a_vertical_speed_is_the_mean_over_two_intervals_if_heights_curve_without_noise() -> None:
+    """At the start it is the mean over the first interval; noise is what third differences leave."""
+    time = 0.1 * np.arange(40.0)
+    speed = present(_vertical_speed(time, 15.0 * time**2, np.zeros(40, np.int64), time))
+    assert speed[0] == pytest.approx(15.0 * 0.1)
+    noise = np.tile([1.0, -1.0], 20)  # 37 third differences of ±8, with a 0 behind them
+    window = 8.0 / np.sqrt(20.0) * np.sqrt(37.0 / 38.0) / 0.3
+    speed = present(_vertical_speed(time, noise, np.zeros(40, np.int64), time))
+    later = np.interp(window / 2.0, time, noise)
+    assert speed[0] == pytest.approx((later - 1.0) / (window / 2.0))
