@@ -17,6 +17,8 @@ from skisnow._support.spreadsheet_text import is_number, number
 from skisnow.campaign import Problem, check_campaign, read_campaign
 from skisnow.campaign.problems import error
 from skisnow.campaign.reading.columns import iso_moment, numbers
+from skisnow.campaign.reading.row_checks import LIKELY
+from skisnow.parameters.quantity import LARGEST, SMALLEST
 
 from ..conftest import SmallCampaign
 
@@ -95,13 +97,21 @@ def test_a_long_cell_is_kept_and_its_sentence_is_short(length: int) -> None:
         ("4/4/2026", "2026-04-04"),
         ("2026-11-23T09:10:00Z", "2026-11-23T09:10:00Z"),
         ("9:05", "9:05"),
+        ("9:05:07", "9:05:07"),
+        ("12/12/2026", "2026-12-12"),
+        ("13/12/2026", "2026-12-13"),
+        ("12/13/2026", "2026-12-13"),
+        ("1.2.99", "2099-02-01"),
+        ("1.2.0100", "0100-02-01"),
     ],
 )
 def test_days_that_are_read(cell: str, written: str) -> None:
     assert iso_moment(cell) == written
 
 
-@pytest.mark.parametrize("cell", ["3/4/2026", "32.1.2026", "23.13.2026", "23.11.2026 25:00", "2026", "25:10"])
+@pytest.mark.parametrize(
+    "cell", ["3/4/2026", "32.1.2026", "23.13.2026", "23.11.2026 25:00", "2026", "25:10", "12/11/2026", "11/12/2026"]
+)
 def test_days_that_are_none_or_could_be_two(cell: str) -> None:
     assert iso_moment(cell) is None
 
@@ -111,11 +121,13 @@ def test_a_day_that_cannot_be_read_is_one_warning_and_stays(small: SmallCampaign
     folder = small.written({"density.csv": table})
     (problem,) = check_campaign(folder)
     found = (problem.severity, problem.code, problem.row, problem.column, problem.experiment)
-    assert problem.value is not None and problem.value.startswith("gestern, ")
+    assert problem.value == "gestern, and 1 more like it"
     assert found == ("warning", "unreadable_date", 3, "time", "D2")
     density = read_campaign(folder).density
     assert density is not None
     assert density.further["time"] == ("2026-02-01", "gestern", "3/4/2026")
+    (problem,) = check_campaign(small.written({"density.csv": table.replace("3/4/2026", "")}))
+    assert problem.value == "gestern"
 
 
 # Campaigns in a wrong unit are warned of, those of the paper's sizes are not; a row pasted twice is reported
@@ -240,3 +252,52 @@ def test_a_row_pasted_twice(reference: Path, tmp_path: Path, file: str) -> None:
         ("repeated_row", file, len(lines) + 1, "row 3"),
         ("repeated_row", file, len(lines) + 2, "row 3"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("column", "low", "high", "if_low", "if_high"),
+    [
+        ("load_N", 2, 20_000, "kN", "mN or g"),
+        ("depth_mm", 0.02, 500, "m", "µm"),
+        ("lever_arm_mm", 40, 5000, "m or cm", "µm"),
+        ("moment_Nm", 0.1, 1000, "kN m", "N mm or N cm"),
+        (SNOW_DENSITY, 20, 917, "g/cm³", "g/m³"),
+        (DROP_CONE_DEPTH, 0.5, 300, "m", "µm"),
+    ],
+)
+def test_limits_of_likely_medians(column: str, low: float, high: float, if_low: str, if_high: str) -> None:
+    likely = LIKELY[column]
+    medians = (math.nextafter(low, 0.0), low, high, math.nextafter(high, math.inf))
+    assert [likely.other_unit(median) for median in medians] == [if_low, "", "", if_high]
+    assert likely.each_row is (column != "depth_mm")
+
+
+@pytest.mark.parametrize(
+    ("cells", "row", "value", "other"),
+    [
+        (["5000"], None, "", ""),
+        (["5001"], 6, "5001", "µm"),
+        (["0.02"], None, "", ""),
+        (["0.0199"], 6, "0.0199", "m"),
+        (["0", "0.0199", "5001"], 7, "0.0199, and 1 more like it", "m"),
+    ],
+)
+def test_a_number_500_times_the_median_is_reported(
+    small: SmallCampaign, cells: list[str], row: int | None, value: str, other: str
+) -> None:
+    """The median without zeros is 10 mm."""
+    tests = "".join(f"C{index},Süd,1,{cell}\n" for index, cell in enumerate(["10", "10", "10", "10", *cells]))
+    found = small.check({"drop_cone.csv": f"test,site,repeat,drop_cone_depth_mm\n{tests}"})
+    places = [(each.code, each.row, each.column, each.value) for each in found]
+    assert places == ([("unlikely_unit", row, DROP_CONE_DEPTH, value)] if row else [])
+    assert all(f"this is {other} or" in each.action and "factor 500 " in each.allowed for each in found)
+
+
+def test_an_unlikely_median_and_an_absurd_number_are_quoted(small: SmallCampaign) -> None:
+    small["drop_cone.csv"] = "test,site,repeat,drop_cone_depth_mm\nC1,A,1,301\nC1,A,2,401\nC1,A,3,0\n"
+    (problem,) = small.check()
+    assert (problem.value, problem.row, problem.experiment) == ("a median of 351", None, None)
+    assert "0.5 to 300 " in problem.allowed
+    (problem,) = small.errors({"drop_cone.csv": "test,site,repeat,drop_cone_depth_mm\nC1,A,1, 1e300\n"})
+    assert (problem.row, problem.value) == (2, "1e300")
+    assert f"{SMALLEST:g} to {LARGEST:g}" in problem.allowed

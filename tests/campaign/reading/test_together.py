@@ -110,6 +110,21 @@ def test_angles_above_60_degrees_or_like_radians_are_warned_of(
     assert all(problem.severity == "warning" for problem in problems)
 
 
+def test_angles_like_radians_are_quoted_from_the_smallest(small: SmallCampaign) -> None:
+    small.replace(SHEAR, "blade,90", "blade,1.2")
+    small.replace(SHEAR, "blade,45", "blade,0.5")
+    (problem,) = small.check()
+    assert where(problem) == ("angles_look_like_radians", SHEAR, None, "edge_angle_deg", None, "0.5 to 1.2")
+
+
+def test_each_steep_experiment_is_reported_once(small: SmallCampaign) -> None:
+    small[PEN] = small[PEN].replace("piece,30", "piece,75").replace("disc 100,0", "piece,80")
+    assert [where(problem) for problem in small.check()] == [
+        ("angle_above_60", PEN, 2, "edge_angle_deg", "P1", "75"),
+        ("angle_above_60", PEN, 5, "edge_angle_deg", "P2", "80"),
+    ]
+
+
 # Shear experiments of several rows: one moment for each turning angle
 
 

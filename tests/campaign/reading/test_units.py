@@ -75,7 +75,9 @@ def test_loads_that_look_like_kg_are_rejected(write_campaign: WriteCampaign) -> 
 def test_a_heading_in_kg_is_believed(write_campaign: WriteCampaign, heading: str) -> None:
     folder = write_campaign(campaign(load=heading))
     assert loads_of(read_campaign(folder)) == pytest.approx([98.0665, 294.1995, 490.3325])
-    assert [each.code for each in check_campaign(folder)] == ["converted_unit"]
+    (note,) = check_campaign(folder)
+    assert (note.code, note.column, note.value) == ("converted_unit", "load_N", f"{heading} converted from kg")
+    assert not note.needs_action
 
 
 @pytest.mark.parametrize("heading", ["Last [N]", "Last (N)", "Last / N", "Last N", "Last_N", "load_N"])
@@ -167,11 +169,43 @@ def test_stated_lever_arms_are_used(write_campaign: WriteCampaign, arm: str, cel
     assert float(shear.lever_arm[0]) == pytest.approx(1e-3 * millimetres)
 
 
-@pytest.mark.parametrize(("arm", "unit"), [(0.25, "m"), (25, "cm"), (60, "cm"), (5001, "µm"), (250000, "µm")])
+@pytest.mark.parametrize(
+    ("arm", "unit"), [(0.25, "m"), (4.9, "m"), (5, "cm"), (99.9, "cm"), (5001, "µm"), (250000, "µm")]
+)
 def test_lever_arms_that_are_rejected(write_campaign: WriteCampaign, arm: float, unit: str) -> None:
     (problem,) = problems(write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{arm},23.1\n", load="Last [N]")))
     assert (problem.code, problem.severity) == ("unit_missing", "error")
     assert f'units."Hebelarm" = "{unit}"' in problem.action
+
+
+@pytest.mark.parametrize("arm", [100, 5000])
+def test_lever_arms_that_are_just_allowed(write_campaign: WriteCampaign, arm: float) -> None:
+    assert problems(write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{arm},23.1\n", load="Last [N]"))) == []
+
+
+def test_values_of_a_column_without_unit_are_quoted_with_the_first_row(write_campaign: WriteCampaign) -> None:
+    """A cell that is not a number is no value."""
+    files = campaign("1,A,ski,30,x,0.63\n1,A,ski,30,10,0.7\n1,A,ski,30,50,1.41\n")
+    (problem,) = [each for each in check_campaign(write_campaign(files)) if each.code == "unit_missing"]
+    assert (problem.row, problem.value) == (3, "Last: 10 to 50 with tool ski")
+    files = campaign(shear="S1,A,blade,90,5.8,x,23.1\nS2,A,blade,90,5.8,30,1\nS3,A,blade,90,5.8,25,1\n", load="load_N")
+    (problem,) = [each for each in check_campaign(write_campaign(files)) if each.code == "unit_missing"]
+    assert (problem.row, problem.value) == (3, "Hebelarm: 25 to 30")
+    (problem,) = problems(write_campaign(campaign(load="load_N", density="Probe,Ort,Dichte\nD1,A,0.3\nD2,A,0.4\n")))
+    assert (problem.row, problem.value) == (2, "Dichte: with a median of 0.35")
+
+
+@pytest.mark.parametrize(
+    ("depths", "row"),
+    [([0.177], 2), ([0.1774], None), ([0.141, 1.41], None), ([1.41, 0.141], None), ([1.41, 0.141, 0.141], 2)],
+)
+def test_half_of_the_experiments_harder_than_any_snow(
+    write_campaign: WriteCampaign, depths: list[float], row: int | None
+) -> None:
+    """At 30° and 490.3 N, 0.177 mm are 90.2 N/mm³ and 0.1774 mm are 89.8 N/mm³."""
+    loads = "".join(f"{name},A,ski,30,490.3,{depth}\n" for name, depth in enumerate(depths))
+    found = [(each.row, each.value) for each in problems(write_campaign(campaign(loads)))]
+    assert found == ([(row, f"Tiefe: {min(depths)} to {max(depths)} with tool ski")] if row else [])
 
 
 def test_one_lever_arm_above_five_metres_is_enough(write_campaign: WriteCampaign) -> None:
@@ -289,7 +323,13 @@ def test_columns_that_are_kept_as_text_are_not_converted(write_campaign: WriteCa
     files = campaign(load="Last [N]", mapped={"Luft [°F]": "air_temperature_C"})
     files["penetration.csv"] = "Versuch,Ort,Werkzeug,Kantwinkel,Last [N],Tiefe,Luft [°F]\n1,A,ski,30,100,1.2,14\n"
     (problem,) = problems(write_campaign(files))
-    assert (problem.code, problem.column) == ("other_unit", "air_temperature_C")
+    assert (problem.code, problem.row, problem.column) == ("other_unit", 1, "air_temperature_C")
+    assert (problem.value, problem.allowed) == ("Luft [°F]", "numbers in °C")
+
+
+def test_a_row_with_one_unit_is_not_one_of_units(write_campaign: WriteCampaign) -> None:
+    found = problems(write_campaign(campaign(f",,,,kg,\n{LOADS}")))
+    assert {(each.code, each.row) for each in found if each.severity == "error"} >= {("not_a_number", 2)}
 
 
 def silent(folder: Path) -> Path:
