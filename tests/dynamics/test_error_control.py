@@ -3,6 +3,7 @@
 import itertools
 import math
 from functools import cache
+from types import SimpleNamespace
 from typing import Final
 
 import numpy as np
@@ -40,6 +41,15 @@ def test_half_the_tolerance_and_a_last_bit_of_the_start_speed(changes: dict[str,
     one, other = run(**changes), run(start__speed_m_per_s=7.0 * (1.0 + 1e-12), **changes)
     assert one.counts == other.counts
     assert 0.0 < np.linalg.norm(one.position - other.position) < 1e-10
+
+
+@pytest.mark.parametrize("ended", Ended)
+def test_the_core_is_called_again_until_it_has_ended(ended: Ended, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It comes back from time to time, so that Ctrl-C is seen."""
+    dynamics = sledge(given())
+    answers = iter([len(Ended), len(Ended), int(ended)])
+    monkeypatch.setattr(dynamics, "compiled", SimpleNamespace(advance=lambda *_: next(answers)))
+    assert dynamics.advance(1.0) is ended
 
 
 def test_twice_the_same_bits() -> None:

@@ -247,6 +247,8 @@ def test_numbers_of_a_boot(name: str) -> None:
     with raises(ParameterError, "wrong_shape", name=f"BootPose: {name}", shape="(2,)", needed=shape):
         replace(pose, **{name: np.zeros(2)})
     assert pose.numbers.tolist() == [1, 2, 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 4, 0, 0, 0, 0.5]
+    unchecked = BootPose.unchecked(pose.place, pose.axes, pose.velocity, pose.turning)
+    assert unchecked.numbers.tolist() == pose.numbers.tolist()
     at_rest = BootPose.of([1.0, 2.0, 3.0], 0.0)
     assert at_rest.numbers.tolist() == [1, 2, 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, *[0] * 6]
 
