@@ -45,11 +45,13 @@ def test_half_the_tolerance_and_a_last_bit_of_the_start_speed(changes: dict[str,
 
 @pytest.mark.parametrize("ended", Ended)
 def test_the_core_is_called_again_until_it_has_ended(ended: Ended, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It comes back from time to time, so that Ctrl-C is seen."""
-    dynamics = sledge(given())
+    """It comes back from time to time, so that Ctrl-C is seen. Laws are asked for a reason where it failed."""
+    dynamics, asked = sledge(given()), []
     answers = iter([len(Ended), len(Ended), int(ended)])
     monkeypatch.setattr(dynamics, "compiled", SimpleNamespace(advance=lambda *_: next(answers)))
+    monkeypatch.setattr(dynamics, "contact", SimpleNamespace(require_finite_laws=lambda: asked.append(ended)))
     assert dynamics.advance(1.0) is ended
+    assert asked == ([] if ended is Ended.REACHED else [ended])
 
 
 def test_twice_the_same_bits() -> None:
