@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.present import present
 
+from skisnow._support.messages import Message
 from skisnow.campaign import (
     QUALITY_FLAGS,
     Campaign,
@@ -285,7 +286,10 @@ def test_flags_of_the_unloading(back: Series, code: str | None) -> None:
 
 
 def repeated(count: int, column: str | None) -> list[Problem]:
-    return [warning("odd", "a.csv", row=n + 2, column=column, value="x", allowed="", action="") for n in range(count)]
+    return [
+        warning("odd", "a.csv", row=n + 2, column=column, value="x", allowed=Message(""), action=Message(""))
+        for n in range(count)
+    ]
 
 
 @pytest.mark.parametrize(("column", "place"), [("load_N", "a.csv, column load_N"), (None, "a.csv")])

@@ -274,3 +274,12 @@ def test_a_logarithm_has_a_size_of_its_own_order() -> None:
     for key in SEARCHED.values():
         if key.search is not None and key.search.logarithmic:
             assert 0.5 <= key.search.size <= 3.0
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [("carved-46m", set()), ("skier-10deg", {"skier"}), ("giant-slalom-20-gates", {"course", "skier"})],
+)
+def test_facts_of_a_scenario_have_the_parts_that_it_has(name: str, parts: set[str]) -> None:
+    facts = dict(load_scenario(name)._repr_facts().rows)
+    assert facts.keys() & {"boots", "course", "skier"} == parts

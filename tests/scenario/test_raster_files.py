@@ -3,6 +3,8 @@
 import math
 import struct
 import sys
+from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -14,8 +16,8 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.messages import Message
 from skisnow.scenario import read_snow_map, read_terrain
 from skisnow.scenario.map_system import MapSystem, _scale, length_unit, map_system
-from skisnow.scenario.raster import Raster, placed_heights
-from skisnow.scenario.raster_formats import _heights, _require_north_up, _require_one_band
+from skisnow.scenario.raster import FINEST, PlacedValues, Raster, placed_heights, require_metres, require_places
+from skisnow.scenario.raster_formats import _height_unit, _heights, _require_north_up, _require_one_band
 from tests.coded import Coded, coded, raises
 
 CASES = Path(__file__).parents[3] / "shared" / "cases" / "terrain"
@@ -250,6 +252,68 @@ def test_bands_heights_and_position_of_a_geotiff_without_its_package() -> None:
     for key in "bd":
         with raises(ParameterError, "wrong_kind"):
             _require_north_up("a.tif", SimpleNamespace(**none | {key: 0.1}), None)
+
+
+def test_size_and_damage_of_a_geotiff_without_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class DamagedError(Exception):
+        pass
+
+    def damaged(_: Path) -> None:
+        raise DamagedError
+
+    library = SimpleNamespace(open=lambda _: nullcontext(SimpleNamespace(width=1, height=5)))
+    errors = SimpleNamespace(CPLE_BaseError=DamagedError, CRSError=DamagedError, RasterioError=DamagedError)
+    for name, module in (("rasterio", library), ("rasterio._err", errors), ("rasterio.errors", errors)):
+        monkeypatch.setitem(sys.modules, name, cast("Any", module))
+    path = written(tmp_path, "", "heights.tif")
+    with raises(ParameterError, "out_of_range", name="ncols", count=1):
+        read_terrain(path)
+    library.open = damaged
+    with raises(ParameterError, "cannot_read"):
+        read_terrain(path)
+
+
+def test_unit_of_heights_is_that_of_the_band_or_of_the_vertical_system() -> None:
+    metres = MapSystem("", in_degrees=False, unit=1.0, height_unit=None, downwards=False)
+    feet, degrees = replace(metres, unit=0.3048), replace(metres, in_degrees=True, unit=0.0175)
+    for name, system, unit in (
+        (None, None, 1.0), ("ft", None, 0.3048), ("ft", metres, 0.3048), ("m", feet, 1.0), (" ", degrees, 1.0),
+        (None, replace(feet, height_unit=0.3), 0.3), ("m", replace(metres, height_unit=1.00005), 1.0),
+    ):  # fmt: skip
+        assert _height_unit("a.tif", name, system) == unit
+    for vertical in (0.999, 1.001):
+        with raises(ParameterError, "contradiction", name="m", vertical=vertical):
+            _height_unit("a.tif", "m", replace(metres, height_unit=vertical))
+    with raises(ParameterError, "out_of_range", name="furlong"):
+        _height_unit("a.tif", "furlong", None)
+    with raises(ParameterError, "missing", unit=0.3048):
+        _height_unit("a.tif", "", feet)
+
+
+@pytest.mark.parametrize(
+    ("last", "code"),
+    [
+        ((360.0, 90.0), "in_degrees"),
+        ((-360.0, -90.0), "in_degrees"),
+        ((360.5, 90.0), "out_of_range"),
+        ((-360.5, 90.0), "out_of_range"),
+        ((360.0, 90.5), "out_of_range"),
+        ((360.0, -90.5), "out_of_range"),
+    ],
+)
+def test_places_up_to_360_and_90_may_be_degrees(last: tuple[float, float], code: str) -> None:
+    steps = [-math.copysign(FINEST / 2.0, end) for end in last]
+    with raises(ParameterError, code):
+        require_places("a.asc", last, (steps[0], steps[1]), (2, 2))
+    x, y = (np.sort([end, end - math.copysign(0.5, end)]) for end in last)
+    places = PlacedValues(x, y, {"z_m": np.array([[0.0, 100.0], [100.0, 200.0]])})
+    if code == "in_degrees":
+        with raises(ParameterError, code):
+            require_metres("a.asc", places, "z_m", steepest=2.0)
+        require_metres("a.asc", places, "z_m", steepest=201.0)
+        require_metres("a.asc", replace(places, x=np.array([0.0, 1.0])), "z_m", steepest=2.0)
+    else:
+        require_metres("a.asc", places, "z_m", steepest=2.0)
 
 
 @pytest.fixture(name="rasterio")

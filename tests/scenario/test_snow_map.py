@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
 from skisnow.scenario.sledge import Shear
-from skisnow.scenario.snow_map import read_snow_layers
+from skisnow.scenario.snow_map import _corners_that_may_swing, read_snow_layers
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises
@@ -299,3 +300,19 @@ def test_growing_hardness_alone_is_a_law_and_needs_one_hardness(tmp_path: Path) 
     for wrong in ({"snow_map": SnowMap(hardness=Grid.along([0.0, 9.0], np.array([1e8, 2e8])))}, {"layers": layers}):
         with raises(ParameterError, "contradiction"):
             replace(growing, **wrong)
+
+
+@pytest.mark.parametrize("low", [(2, 1), (1, 2), (0, 0), (4, 3), (0, 3)])
+def test_patches_around_a_low_place_may_swing(low: tuple[int, int]) -> None:
+    """The patches of which it is a corner; one beyond the last place repeats its edge."""
+    values = np.ones((5, 4))
+    values[low] = 0.5
+    grid: Any = SimpleNamespace(
+        values=values, x=10.0 * np.arange(5), y=1.0 * np.arange(4), steps=(10.0, 1.0),
+        gradients=lambda *_: (np.full((5, 4), -0.1), np.full((5, 4), 0.5)),
+    )  # fmt: skip
+    x, y = _corners_that_may_swing(grid)
+    rows, columns = ({max(place - 1, 0), place} for place in low)
+    assert set(zip((x / 10.0).tolist(), y.tolist(), strict=True)) == {(i, j) for i in rows for j in columns}
+    values[low] = 0.51  # a third of 0.1 · 10 + 0.5 · 1 is 0.5
+    assert len(_corners_that_may_swing(grid)[0]) == 0

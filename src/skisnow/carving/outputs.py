@@ -137,10 +137,12 @@ def _radius_of_chord(at: CarveRequest) -> OutputGrowth | None:
 def _radius_median(at: CarveRequest) -> OutputGrowth | None:
     """Median turn radius (m) over the contact, with its derivatives; None without one."""
     ends = _contact_ends(at)
+    if ends is None:
+        return None
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
-    circles = None if ends is None else line.median_circles(ends[0].value, ends[1].value)
+    circles = line.median_circles(ends[0].value, ends[1].value)
     circle = None if circles is None else _radius_over(at, circles.places, circles.weight)
-    if ends is None or circles is None or circle is None:
+    if circles is None or circle is None:
         return None
     return replace(_with_ends(circle[0], ends, circles.by_front, circles.by_rear), value=circles.radius)
 

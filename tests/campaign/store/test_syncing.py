@@ -367,3 +367,27 @@ def test_an_entry_without_a_uid_is_damaged(ada: Laptop, group: Store) -> None:
         with raises(StoreError, "damaged"):
             entry_index(connection, damaged)
     assert sync(ada.store, group).n_entries_given == 0
+
+
+def test_a_campaign_with_corrections_stays_and_another_is_removed_with_its_own_bytes(
+    ada: Laptop, tmp_path: Path
+) -> None:
+    place = tmp_path / "kept"
+    corrected = kept(ada.store, place, PLAIN.encode())
+    ada.journals.correct(corrected, correction("1", {"3/depth_mm": "2.25"}), seen=0, standing=standing(place, "1"))
+    files = {name: {"a.csv": b"shared", "b.csv": name.encode()} for name in ("first", "second")}
+    first, second = (ada.store.add(write(tmp_path / name, texts)).id for name, texts in files.items())
+    with raises(StoreError, "has_corrections"):
+        ada.store.remove(corrected)
+    assert ada.store.remove(first).id == first
+    assert {stored.id for stored in ada.store.list()} == {corrected, second}
+    assert ada.store.verify() == ()
+    ada.store.export(second, tmp_path / "out")
+    assert contents(tmp_path / "out") == files["second"]
+    with writing(ada.store.engine) as connection:
+        query = "SELECT count(*) FROM {} WHERE {}"
+        for table, condition in (
+            ("chunk", "data = CAST('first' AS BLOB)"),
+            ("campaign_file", f"campaign_id = '{first}'"),
+        ):
+            assert connection.exec_driver_sql(query.format(table, condition)).scalar() == 0

@@ -273,6 +273,8 @@ def test_bilinear_force_is_the_integral_of_its_stress_and_bilinear_rejects_snow_
     assert float(law.reaction_force(SKI, 0.01, 0.8)) > 0
     with raises(ParameterError, "out_of_range", name="b", at_zero=0.5, slope=-0.6, worst=0.9):
         law.reaction_force(SKI, 0.01, np.array([0.2, 0.9]))
+    with raises(ParameterError, "out_of_range", name="a", at_zero=1e-3, slope=-2e-3, worst=0.9):
+        BilinearLaw(0.2e9, 1e-3, -2e-3, 0.5, 0.1).reaction_force(SKI, 0.01, np.array([0.2, 0.9]))
 
 
 @pytest.mark.parametrize("name", federolf_2006.NAMES)

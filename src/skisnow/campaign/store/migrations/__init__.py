@@ -21,7 +21,6 @@ def alembic_config(connection: Connection | None = None) -> Config:
     """Configure alembic for these migrations, on a connection whose transaction the caller owns."""
     config = Config()
     config.set_main_option("script_location", "skisnow.campaign:store/migrations")
-    config.set_main_option("path_separator", "os")
     if connection is not None:
         config.attributes["connection"] = connection
     return config
