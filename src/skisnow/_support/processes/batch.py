@@ -20,7 +20,6 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
@@ -30,7 +29,7 @@ from typing import Any, Final, Self, TypeAlias
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
 from .kept_rows import KeptRows, NumberedText, Row, json_text
-from .starting import worker_context
+from .starting import interrupts_ignored, worker_context
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Takes the number of finished points and that of all."""
@@ -309,19 +308,6 @@ def _compute_in_worker(points: list[Numbered]) -> Done:
     if _Worker.function is None:
         raise SkisnowError("A worker was not started by a Pool.").tag("no_pool")
     return compute_rows(_Worker.function, points)
-
-
-@contextmanager
-def interrupts_ignored() -> Iterator[None]:
-    """Ignore interrupts while processes start, which inherit this; no effect outside the main thread."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def begin_worker(alive: Connection) -> None:
