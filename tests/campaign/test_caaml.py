@@ -342,3 +342,37 @@ def test_shared_cases() -> None:
     assert read_caaml(CASES / "v603_tempF.caaml").temperatures[0].temperature_C == pytest.approx(-5.0)
     assert read_caaml(CASES / "density_gcm3.caaml").densities[0].snow_density == pytest.approx(300.0)
     assert refusal(CASES / "encoding-utf-9.caaml").row == 1
+
+
+def test_words_for_missing_values_and_aspects(tmp_path: Path) -> None:
+    path = in_units(tmp_path)
+    text = path.read_text(encoding="utf-8")
+    for stated, aspect in (("NE", "NE"), ("n/a", ""), ("Unknown", ""), ("1.2.3", "1.2.3"), ("225.50", "225.5")):
+        path.write_text(text.replace(">1.5</position></AspectPosition>", f">{stated}</position></AspectPosition>"))
+        assert read_caaml(path).aspect == aspect
+    for stated, size in (("fine", None), ("missing", None), ("1", 1e-3)):
+        path.write_text(text.replace("<avg>2</avg>", f"<avg>{stated}</avg>"))
+        assert read_caaml(path).layers[0].grain_size == size
+    path.write_text(text.replace("<thickness>4</thickness>", ""))
+    assert (read_caaml(path).layers[0].thickness, read_caaml(path).densities[0].thickness) == (None, None)
+    path.write_text(text.replace("SnowProfileMeasurements", "Other"))
+    assert refusal(path).column == "snowProfileResultsOf"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "allowed"),
+    [
+        ("10</depthTop>", "155</depthTop>", True),
+        ("10</depthTop>", "155.5</depthTop>", False),
+        ("4</thickness>", "15</thickness>", True),
+        ("4</thickness>", "15.5</thickness>", False),
+        ("20</depth>", "-5</depth>", True),
+        ("20</depth>", "-5.5</depth>", False),
+    ],
+)
+def test_limits_of_heights(tmp_path: Path, old: str, new: str, allowed: bool) -> None:
+    """With a snow height of 150 cm a layer may end 5 cm above the surface or below the ground."""
+    path = in_units(tmp_path)
+    text = path.read_text(encoding="utf-8").replace("top down", "bottom up")
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    assert (len(read_caaml(path).layers) == 1) if allowed else refusal(path).code == "unreadable_file"

@@ -182,3 +182,57 @@ def test_shared_cases() -> None:
     assert read_smet(CASES / "v10_fahrenheit.smet").fields["TA"] == pytest.approx([273.15, 283.15], abs=1e-6)
     assert read_smet(CASES / "semicolon_comment.smet").fields["ISWR"].tolist() == [320.0, 340.0]
     assert refusal(*CASES.glob("tz-out*.smet")).row == 9
+
+
+@pytest.mark.parametrize(
+    ("name", "units", "allowed", "refused"),
+    [
+        ("TA", "273.15 1", "-93.1", "-93.2"),
+        ("TSS", "0 1", "180", "179.9"),
+        ("RH", "0 1", "1.2", "1.21"),
+        ("RH", "0 1", "-0.05", "-0.06"),
+        ("VW", "0 1", "0", "-0.1"),
+        ("ISWR", "0 1", "-50", "-50.5"),
+    ],
+)
+def test_limits_of_medians(path: Path, name: str, units: str, allowed: str, refused: str) -> None:
+    offset, factor = units.split()
+    head = HEAD.replace("TA RH VW", name)
+    head = re.sub(r"(units_offset +=).*", rf"\1 0 {offset}", head)
+    head = re.sub(r"(units_multiplier +=).*", rf"\1 1 {factor}", head)
+    path.write_text(f"{head}2026-02-03T08:00 {allowed}\n")
+    assert list(read_smet(path).fields) == [name]
+    path.write_text(f"{head}2026-02-03T08:00 {refused}\n")
+    problem = refusal(path)
+    assert (problem.row, problem.column) == (12, name)
+    assert problem.value is not None and problem.value.startswith("median ")
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "value"),
+    [
+        ("latitude", "90", 90.0),
+        ("latitude", "-90.1", None),
+        ("longitude", "-180", -180.0),
+        ("longitude", "180.1", None),
+    ],
+)
+def test_limits_of_places(path: Path, key: str, text: str, value: float | None) -> None:
+    path.write_text(re.sub(rf"{key} +=.*", f"{key} = {text}", HEAD) + ROWS)
+    if value is None:
+        problem = refusal(path)
+        assert (problem.row, problem.column, problem.value) == (5 if key == "latitude" else 6, key, text)
+    else:
+        assert getattr(read_smet(path), f"{key}_deg") == value
+
+
+def test_defaults_and_repeated_keys_of_a_header(path: Path) -> None:
+    """Without a time zone and a name, with a place of nodata; a key may be repeated with the same value."""
+    head = re.sub(r"(tz|station_name) .*\n", "", HEAD).replace("46.829", "-999").replace("9.809", "-999")
+    path.write_text(head.replace("nodata ", "nodata = -999\nnodata ") + ROWS)
+    series = read_smet(path)
+    assert (series.station, series.utc_offset, series.latitude_deg, series.longitude_deg) == ("WFJ2", 0.0, None, None)
+    path.write_text(re.sub(r"altitude.*\n", "", HEAD) + ROWS)
+    assert read_smet(path).altitude is None
+    path.write_text(HEAD.replace("timestamp TA RH VW", "timestamp TA TA VW") + ROWS)
+    assert (refusal(path).row, refusal(path).column, refusal(path).value) == (12, "fields", "timestamp TA TA VW")

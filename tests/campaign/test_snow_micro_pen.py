@@ -11,7 +11,7 @@ import pytest
 from tests.present import present
 
 from skisnow._support.errors import FieldDataError
-from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
+from skisnow.campaign.snow_micro_pen import read_snow_micro_pen, snow_surface
 
 from .recordings import LONG, SHORT, built, recording
 
@@ -187,3 +187,70 @@ def test_numbers_up_to_the_limits_are_read(tmp_path: Path, form: str, offset: in
         struct.pack_into(form, data, offset, value)
         (tmp_path / "a.pnt").write_bytes(data)
         assert len(read_snow_micro_pen(tmp_path / "a.pnt").force) == 3
+
+
+def test_a_comment_ends_at_its_length_and_the_height_may_be_unknown(tmp_path: Path) -> None:
+    for length, comment in ((4, "near"), (-1, ""), (102, "near hut!and filling")):
+        data = bytearray(built([1]))
+        struct.pack_into(">h", data, 152, length)
+        for height, metres in ((99_999.0, None), (math.nan, None), (0.0, 0.0), (99_998.0, pytest.approx(999.98))):
+            struct.pack_into(">f", data, 272, height)
+            (tmp_path / "a.pnt").write_bytes(data)
+            profile = read_snow_micro_pen(tmp_path / "a.pnt")
+            assert (profile.comment, profile.height) == (comment, metres)
+
+
+@pytest.mark.parametrize(
+    ("latitude", "longitude", "position"),
+    [
+        (90.0, 180.0, (-90.0, 180.0)),
+        (-45.0, -10.0, (-45.0, 10.0)),
+        (90.5, 10.0, (None, None)),
+        (45.0, 180.5, (None, None)),
+        (0.0, 0.0, (None, None)),
+        (0.0, 10.0, (0.0, 10.0)),
+        (10.0, 0.0, (-10.0, 0.0)),
+    ],
+)
+def test_limits_of_positions(
+    tmp_path: Path, latitude: float, longitude: float, position: tuple[float | None, float | None]
+) -> None:
+    data = bytearray(built([1]))
+    struct.pack_into(">2f", data, 264, latitude, longitude)
+    (tmp_path / "a.pnt").write_bytes(data)
+    profile = read_snow_micro_pen(tmp_path / "a.pnt")
+    assert (profile.latitude_deg, profile.longitude_deg) == position
+
+
+@pytest.mark.parametrize(
+    ("name", "day"),
+    [
+        ("S_20200208_20210101.pnt", date(2020, 2, 8)),
+        ("S_20209908_20210131.pnt", date(2021, 1, 31)),
+        ("S_202002081.pnt", date(2019, 3, 2)),
+        ("S_2020020.pnt", date(2019, 3, 2)),
+    ],
+)
+def test_days_in_names(tmp_path: Path, name: str, day: date) -> None:
+    (tmp_path / name).write_bytes(built([1]))
+    assert read_snow_micro_pen(tmp_path / name).recorded_on == day
+
+
+@pytest.mark.parametrize(
+    ("air_mm", "snow_mm", "surface"),
+    [(5.0, 10.0, 5.0), (4.5, 10.0, 5.0), (2.0, 10.0, None), (30.0, 5.5, 30.0), (30.0, 5.0, None), (30.0, 0.0, None)],
+)
+def test_least_lengths_of_air_and_snow(air_mm: float, snow_mm: float, surface: float | None) -> None:
+    """Blocks of 0.5 mm: the median of 5 mm is air, and a block more than the hold of 5 mm is snow."""
+    force = np.concatenate([np.full(round(10 * air_mm), 0.05), np.full(round(10 * snow_mm), 0.0601)])
+    found = snow_surface(force, 1e-4, rise=0.01, hold=5e-3)
+    depth = None if found is None else (found.depth * 1e3, found.air_force)
+    assert depth == (None if surface is None else pytest.approx((surface, 0.05)))
+
+
+def test_air_is_the_median_of_the_20_mm_before() -> None:
+    """Earlier air at 0.5 N does not count, and half of the 20 mm decides."""
+    force = np.concatenate([np.full(300, 0.5), np.full(195, 0.05), np.full(100, 0.3)])
+    found = snow_surface(force, 1e-4, rise=0.01, hold=5e-3)
+    assert found is not None
+    assert (found.depth, found.air_force) == pytest.approx((0.0495, 0.05))

@@ -56,3 +56,50 @@ def test_a_template_has_a_name(tmp_path: Path) -> None:
             save_template(name, campaign, folder=tmp_path)
     with raises(ParameterError, "no_template", name="Gletscher", saved=["Gletscher 2026"]):
         read_template("Gletscher", named=tmp_path)
+
+
+def test_options_and_their_errors() -> None:
+    options = {"unit": ["a=b=kg"], "tool": ["disc 50 mm", " A = ski 20 x 6 cm "], "ignore": ["Hang!5"], "column": None}
+    answers = Answers.of_options(options)  # type: ignore[arg-type]
+    assert answers == Answers(
+        unit={"a=b": "kg"}, tool={"": "disc 50 mm", "A": "ski 20 x 6 cm"}, ignore={"Hang!5": "yes"}
+    )
+    assert answers.updated(Answers(unit={"a=b": "N", "c": "mm"})).unit == {"a=b": "N", "c": "mm"}
+    headings = Answers(column={"Last": "load_N", "shear.LAST": "moment_Nm"})
+    assert [headings.of_heading("column", table, "last") for table in ("shear", "density")] == ["moment_Nm", "load_N"]
+    assert headings.of_heading("column", "shear", "Tiefe") == ""
+    with raises(ParameterError, "no_pair", option="unit", text="kg"):
+        Answers.of_options({"unit": ["kg"]})
+
+
+def test_folders_without_an_import_and_templates_without_answers(tmp_path: Path) -> None:
+    (tmp_path / "a" / "original").mkdir(parents=True)
+    (tmp_path / "outside").write_text("mine")
+    for record in (None, "{}x", "[]", '{"../outside": ""}'):
+        if record is not None:
+            (tmp_path / "a" / "original" / "import.json").write_text(record)
+        with raises(OutputError, "no_import"):
+            undo_import(tmp_path / "a")
+    assert (tmp_path / "outside").read_text() == "mine"
+    with raises(OutputError, "not_empty"):
+        write_import({}, tmp_path / "outside")
+    for text in ("name = 'x'", "import = 3", "[import]\nunit = 'kg'", "[import.unit]\nLast = 3"):
+        (tmp_path / "campaign.toml").write_text(text)
+        with raises(ParameterError, "no_template"):
+            read_template(tmp_path)
+
+
+def test_a_line_of_a_wrong_cell_is_that_of_the_imported_file() -> None:
+    head = "Skistück 200 x 62 mm\nOrt: oben\n\nVersuch;Kantwinkel;Last;Tiefe\n;°;kg;mm\n1;30;50;1,41\n"
+    (problem,) = propose("Hang.csv", f"{head}1;30;60;-2\n".encode()).problems
+    assert (problem.code, problem.file, problem.row, problem.column) == (
+        "out_of_range", "Hang.csv, sheet Hang", 7, "depth_mm",
+    )  # fmt: skip
+    assert problem.action.endswith("--ignore Hang!7.")
+    wrong = [
+        ({"table": {"Hang:4": "penetration"}, "column": {"Last": "lod"}}, "bad_answer", "Last"),
+        ({"tool": {"": "x"}}, "bad_answer", "tool"),
+    ]
+    for answers, code, column in wrong:
+        found = propose("Hang.csv", head.encode(), Answers(**answers)).problems
+        assert (code, "Hang:4", column) in [(each.code, each.file, each.column) for each in found]

@@ -175,3 +175,18 @@ def test_nothing_is_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[s
     with raises(OutputError, "holds_campaign_already"):
         write_new_campaign(tmp_path / "new", xlsx=True)
     assert main(["new", "campaign", str(tmp_path / "new")]) == 1
+
+
+@pytest.mark.parametrize(("titles", "row"), [(0, 1), (19, 20), (20, 1)])
+def test_headings_are_searched_in_twenty_rows(small: SmallCampaign, titles: int, row: int) -> None:
+    title, table = "Hang\n" * titles, small["density.csv"].replace("site", "sites")
+    missing = [each for each in small.errors({"density.csv": title + table}) if each.code == "missing_column"]
+    assert [(each.row, each.column) for each in missing] == [(row, "site" if titles < 20 else None)]
+
+
+def test_a_heading_like_a_known_column_needs_an_action(small: SmallCampaign) -> None:
+    for heading, needs_action in (("remrk", True), ("Wetter", False)):
+        (problem,) = small.check({"density.csv": small["density.csv"].replace("sample", f"{heading},sample", 1)
+                                  .replace("\nD", "\nx,D")})  # fmt: skip
+        assert (problem.code, problem.row, problem.column) == ("unknown_column", 1, heading)
+        assert (problem.needs_action, "Did you mean 'remark'? Rename 'remrk'" in problem.action) == (needs_action,) * 2

@@ -14,6 +14,8 @@ from tests.present import present
 
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign import Campaign, campaign_of_files, read_campaign
+from skisnow.campaign.reading.campaign import READ_FILES
+from skisnow.campaign.reading.workbook_files import description_text
 from skisnow.estimation import analyse, quality_flags, results_dict
 
 from ...support.user_files.test_workbook import packed
@@ -216,3 +218,56 @@ def test_wrong_settings(small: SmallCampaign, section: str, column: str, words: 
     (problem,) = small.errors()
     assert (problem.code, problem.column) == ("bad_toml", column)
     assert words in problem.allowed
+
+
+def test_texts_of_the_sheets_that_describe_a_campaign() -> None:
+    """Units and columns of all tables or of one; a blank row, key, heading or value gives no line."""
+    sheets = {
+        "columns": [
+            ["heading", "column", "unit", "table"], ["Last", "load_N", "kg"], ["", "load_N", "kg"], ["", ""],
+            ["Tiefe", "depth_mm", "", "shear"], ["Ort", "", "mm"],
+        ],
+        "campaign": [
+            ["", ""], ["key", "value"], ["name", "12"], ["place", ""], ["", "x"], ["exclude", "creeps; layered ;"],
+            ["gauge_resolution_mm", "0,01"], ["load_steps_N", "70;140,5"],
+        ],
+        "tools": [["name", "shape", "", "length_mm"], ["a", "ski", "x", "200"]],
+        "plates": [["name", "length_mm"], ["", "80"]],
+    }  # fmt: skip
+    assert description_text(sheets).splitlines() == [
+        'columns."Last" = "load_N"', 'units."Last" = "kg"', 'columns."shear"."Tiefe" = "depth_mm"',
+        'units."Ort" = "mm"', '"name" = "12"', 'screening."exclude" = ["creeps", "layered"]',
+        '"gauge_resolution_mm" = 0.01', '"load_steps_N" = [70.0, 140.5]', "[[tool]]", '"name" = "a"', '"shape" = "ski"',
+        '"length_mm" = 200.0', "[[plate]]", '"length_mm" = 80.0',
+    ]  # fmt: skip
+    assert description_text({}) == ""
+
+
+@pytest.mark.parametrize(("shown", "named"), [(5, True), (4, False)])
+def test_a_sheet_is_named_from_six_tenths_of_the_columns_on(small: SmallCampaign, shown: int, named: bool) -> None:
+    """Below a title of two cells; density.csv has three required columns, shear.csv seven."""
+    del small["shear.csv"]
+    head = ["Versuch", "Ort", "Platte", "Winkel", "Tiefe", "Hebelarm", "Moment"][:shown]
+    found = small.check({"Hang.xlsx": packed(Blatt=[["Hang", "oben"], head, ["S1", "Süd", "blade", 90, 5][:shown]])})
+    places = [(each.code, each.file, each.value) for each in found]
+    assert places == ([("unread_sheet", "Hang.xlsx, sheet Blatt", "Blatt")] if named else [])
+    assert all("shear" in each.allowed and "tools" in each.allowed for each in found)
+
+
+def test_a_second_sheet_of_a_table_and_a_damaged_workbook(small: SmallCampaign) -> None:
+    rows = cells(small.pop("density.csv"))
+    (problem,) = small.check({"Hang.xlsx": packed(density=rows, **{" Density.csv": rows})})
+    assert (problem.code, problem.file, problem.value) == (
+        "unreadable_file", "Hang.xlsx, sheet  Density.csv", " Density.csv",
+    )  # fmt: skip
+    (problem,) = small.check({"Hang.xlsx": packed(density=rows), "Hang2.xlsx": b""})
+    assert (problem.code, problem.file) == ("unreadable_file", "Hang2.xlsx")
+
+
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [("shear.csv", True), ("campaign.toml", True), ("Hang.XLSX", True), ("a.PNT", True), ("w.smet", True),
+     ("sub/shear.csv", False), ("sub/a.pnt", False), ("~$Hang.xlsx", False), (".Hang.xlsx", False), ("a.jpg", False)],
+)  # fmt: skip
+def test_names_of_files_that_a_campaign_reads(name: str, read: bool) -> None:
+    assert (name in READ_FILES) is read
