@@ -97,7 +97,36 @@ def test_what_is_no_small_photo_is_rejected(photo: str) -> None:
         photo_entry("penetration.csv", "1", photo)
 
 
-@pytest.mark.parametrize("place", [(90.5, 0.0, 1.0), (0.0, 180.5, 1.0), (47.0, 11.0, -1.0), (math.nan, 11.0, 1.0)])
+@pytest.mark.parametrize(
+    "place",
+    [
+        (90.5, 0.0, 1.0),
+        (-90.5, 0.0, 1.0),
+        (0.0, 180.5, 1.0),
+        (0.0, -180.5, 1.0),
+        (47.0, 11.0, -1.0),
+        (math.nan, 11.0, 1.0),
+        (47.0, 11.0, math.inf),
+    ],
+)
 def test_what_is_no_position_is_rejected(place: tuple[float, float, float]) -> None:
     with raises(ParameterError, "no_position"):
         Position(*place)
+
+
+def test_the_largest_photo_and_the_outermost_positions_are_stored() -> None:
+    """A photo is cut into cells of 90,000 characters, in their order."""
+    assert [Position(*place).accuracy_m for place in ((90.0, 180.0, 0.0), (-90.0, -180.0, 1.0))] == [0.0, 1.0]
+    entry = position_entry("shear.csv", "S1", Position(-47.123456789, 11.5, 6.0), who="Ada")
+    assert entry.cells == {
+        "table": "shear.csv", "test": "S1", "latitude_deg": "-47.12345679", "longitude_deg": "11.5", "accuracy_m": "6",
+    }  # fmt: skip
+    assert (entry.action, entry.file, entry.position, entry.who) == ("add", "attachments.csv", 0, "Ada")
+    assert len(entry.test) == len("shear S1 ") + 8
+    largest = base64.b64encode(PHOTO[:3] + bytes(MOST_PHOTO_BYTES - 3)).decode()
+    cells = photo_entry("penetration.csv", "1", largest).cells
+    pieces = [cells[f"photo_{number:02d}"] for number in range(len(cells) - 2)]
+    assert [len(piece) for piece in pieces] == [90_000] * 10 + [len(largest) - 900_000]
+    assert "".join(pieces) == largest
+    with raises(ParameterError, "no_photo", size=MOST_PHOTO_BYTES + 1, most=MOST_PHOTO_BYTES):
+        photo_entry("penetration.csv", "1", base64.b64encode(PHOTO[:3] + bytes(MOST_PHOTO_BYTES - 2)).decode())

@@ -175,6 +175,14 @@ def test_a_connection_that_may_not_write(id_: str, place: Path, folder: Path, tm
         store.export(id_, tmp_path / "out")
 
 
+def test_another_campaign_of_the_same_id_is_rejected(id_: str, place: Path, folder: Path) -> None:
+    with Store.open(place) as store:
+        with store.engine.begin() as connection:
+            connection.execute(text("UPDATE campaign SET sha256 = :other"), {"other": id_.ljust(64, "f")})
+        with raises(StoreError, "same_id", id=id_):
+            store.add(folder)
+
+
 def test_a_store_beside_no_log(id_: str, place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """SQLite's behaviour if the file beside the store cannot be made, root or not."""
     connect = sqlite3.connect

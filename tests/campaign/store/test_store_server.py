@@ -209,6 +209,8 @@ def test_an_address_is_shown_without_its_password() -> None:
     assert (str(place), "secret" in repr(place)) == ("postgresql://ada@snow.example:5433/group", False)
     with raises(StoreError, "not_an_address"):
         Store.open(Path("postgresql://ada@host/group"))
+    with raises(StoreError, "no_database"):
+        store_place("postgresql://ada@host")
 
 
 def test_with_a_password_over_the_network(server: Server, tmp_path: Path) -> None:
