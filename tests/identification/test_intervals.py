@@ -14,6 +14,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from skisnow._support.errors import ParameterError
+from skisnow._support.messages import Message
 from skisnow.identification import Identification, identify, intervals
 from skisnow.identification.intervals import _resample, add_bootstrap_intervals
 from skisnow.identification.parameter import Parameter
@@ -49,7 +50,7 @@ class Decay:
     def fits(self, values: Values) -> tuple[Fit, ...]:  # noqa: ARG002
         return ()
 
-    def warnings(self, values: Values) -> tuple[str, ...]:  # noqa: ARG002
+    def warnings(self, values: Values) -> tuple[Message, ...]:  # noqa: ARG002
         return ()
 
 

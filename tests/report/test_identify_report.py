@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skisnow._support.messages import Message
 from skisnow.identification.parameter import Parameter
 from skisnow.identification.problem import Fit
 from skisnow.identification.result import Effort, Identification, Identified, Profile, identification_dict
@@ -56,11 +57,13 @@ def found() -> Identification:
     value = np.linspace(0.035, 0.05, 7)
     profile = Profile("friction.mu_0", value, ((value - 0.0423456) / 0.0012) ** 2, 4.0)
     return Identification(
-        outcome="converged", reason="The search ended.", scenario="carved-46m", parameters=(mu, area),
+        outcome="converged", reason=Message("The search ended."), scenario="carved-46m", parameters=(mu, area),
         correlation=np.array([[1.0, -0.93], [-0.93, 1.0]]), covariance=np.diag([0.0012**2, 0.02**2]),
-        points=6, degrees_of_freedom=4, warnings=("Two are hardly told apart",), methods=("By Gauss and Newton",),
+        points=6, degrees_of_freedom=4, warnings=(Message("Two are hardly told apart"),),
+        methods=(Message("By Gauss and Newton"),),
         fits=(cells("a"), cells("b", late=0.02)), profiles=(profile,),
-        effort=Effort(simulations=12, kept_simulations=5, rounds=3, wall_s=1.25), data=(("cells.csv", "photo cells"),),
+        effort=Effort(simulations=12, kept_simulations=5, rounds=3, wall_s=1.25),
+        data=(("cells.csv", Message("photo cells")),),
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from html import unescape
 from importlib.metadata import version
 from pathlib import Path
@@ -14,8 +15,11 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.messages import Message, in_language
 from skisnow.campaign import QUALITY_FLAGS
 from skisnow.comparison import compare_tracks, comparison_dict
+from skisnow.identification import track_positions
 from skisnow.identification import uncertainty as words
+from skisnow.identification.intervals import EXACT_POSTERIOR, QUADRATIC_POSTERIOR
 from skisnow.identification.result import Identification
+from skisnow.identification.track_positions import track_points
 from skisnow.report import identification as identify_report
 from skisnow.report import write_report
 from skisnow.report.campaign.data import ReportData
@@ -33,9 +37,10 @@ from skisnow.report.track.report import comparison_drawing, track_drawings
 from skisnow.report.turn import page as turn_report
 from skisnow.report.turn.chain import TurnChain
 from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.simulation.verification import limit_sentences
 from skisnow.track.course.gates_table import GateGap
 from skisnow.track.summary import track_summary
-from skisnow.track.track import Track
+from skisnow.track.track import Track, inexact_sentence
 
 from ..conftest import without_figures
 from . import test_identify_report, test_turn_report
@@ -293,3 +298,34 @@ def test_every_warning_about_identified_values_has_its_german_one() -> None:
         Message("{warning}.", warning=each).text("de") for each in (*words._HELPS.values(), *words._ALONE.values())
     ]
     assert [each for each in german if ENGLISH.search(each)] == []
+
+
+def test_no_warning_of_a_german_identification_is_left_in_english(found: Identification) -> None:
+    parameters = tuple(row.parameter for row in found.parameters)
+    spreads = [words.linear_uncertainty(size * np.eye(2), degrees_of_freedom=None) for size in (0.01, 0.0)]
+    way = np.linspace(0.0, 20.0, 20)
+    track = track_points(Track("a", way, np.column_stack([way, 0.0 * way, way]), np.full(20, np.nan), "local", "made"))
+    row = {"outcome": "energy_open", "reached": 15, "x_m": [*way[:19], 90.0], "y_m": [0.0] * 20}
+    warnings = (
+        *(text for spread in spreads for text in words.unknown_warnings(parameters, spread)),
+        *track_positions._result_warnings(track, row | {"speed_m_per_s": [0.0] * 20}),
+        *limit_sentences({"start.speed_m_per_s": 1.5}, 10.0),
+        *filter(None, [track_positions.require_near(track, (1.5, 0.0), start_is_free=False)]),
+        *filter(None, [inexact_sentence("a", np.array(kinds)) for kinds in (["fixed", "float"], ["fixed", "code"])]),
+    )
+    assert len(warnings) == 11
+    result = replace(found, warnings=warnings, methods=(QUADRATIC_POSTERIOR, EXACT_POSTERIOR), data=())
+    names = names_in(found) | {"The search ended"}
+    assert left(lambda _: identify_report.identify_page(result, []), names, fewest=30) == set()
+
+
+def test_no_warning_of_a_german_comparison_is_left_in_english() -> None:
+    way = np.linspace(0.0, 60.0, 300)
+    place = np.column_stack([way, 3.0 * np.sin(way / 5.0), -0.4 * way])
+    flags = {"x": np.arange(300) < 9}
+    onto_map = Track("a", way, place, np.full(300, np.nan), "local", axes="east_north_up", flags=flags)
+    on_slope = replace(onto_map, name="b", place=place[:240], time=way[:240], speed=way[:240], axes="slope", flags={})
+    fits = [compare_tracks(on_slope, onto_map, fit=fit) for fit in ((), ("start", "heading"))]
+    texts_of_fits = [text for fit in fits for text in (*fit.warnings, fit.seen)]
+    assert len(texts_of_fits) > 6
+    assert [text.text("de") for text in texts_of_fits if ENGLISH.search(text.text("de"))] == []

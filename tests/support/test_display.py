@@ -9,6 +9,7 @@ import pytest
 
 import skisnow
 from skisnow import SnowProperties, Track
+from skisnow._support.messages import Message
 from skisnow._support.units import Facts, Shown, field_facts
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
@@ -34,7 +35,12 @@ def identified() -> skisnow.Identification:
     one = Identified(parameter=key, value=0.02, interval=(0.015, 0.025))
     many = np.zeros((400, 400))
     return skisnow.Identification(
-        outcome="converged", reason="", scenario="carved-46m", parameters=(one,), correlation=many, covariance=many
+        outcome="converged",
+        reason=Message(""),
+        scenario="carved-46m",
+        parameters=(one,),
+        correlation=many,
+        covariance=many,
     )
 
 

@@ -10,7 +10,8 @@ from typing import Final, get_args
 import numpy as np
 
 from .._support.errors import ParameterError, require_range
-from .._support.units import DEGREE, amount
+from .._support.messages import Message, joined, template
+from .._support.units import DEGREE
 from ..track.slope_frame import STEEPEST, LaidTracks, lay_for_fit
 from ..track.track import Track, inexact_sentence
 from .alignment import OFFSETS, Motion, fit_motion, require_offsets
@@ -26,7 +27,6 @@ from .distances import (
 )
 from .nearest_place import Path
 from .result import (
-    FIRST_POINTS,
     Clock,
     Comparison,
     Distances,
@@ -54,6 +54,7 @@ DEFINITIONS: Final = {
     "time": "between the places where both are at the same time, counted from {origin}, while both are on their way",
 }
 """Definition of each distance."""
+_KIND_WORDS: Final = {"nearest": Message("nearest"), "arc_length": Message("arc length"), "time": Message("time")}
 
 
 def compare_tracks(
@@ -124,7 +125,8 @@ def compare_tracks(
     names = (simulated.name, measured.name)
     warnings = [*_track_warnings(simulated, dimensions), *_track_warnings(measured, dimensions), *laid.warnings]
     if not together and not placed:
-        warnings.append(f"{_frames_sentence(simulated, measured)}; their coordinates are compared as they stand")
+        frames = _frames_sentence(simulated, measured)
+        warnings.append(Message("{frames}; their coordinates are compared as they stand", frames=frames))
     plain = _compare_lines(lines, clock, names, seen)
     if fit:
         plain = _fit_and_compare(plain, set(fit), clock)
@@ -142,7 +144,7 @@ def compare_tracks(
         fitted = replace(fitted, slope_angle=laid.angle, azimuth=azimuth)
         if not together:
             direction = _direction_sentence(fitted, laid, simulated, measured)
-            warnings.append(f"{_frames_sentence(simulated, measured)}; {direction}")
+            warnings.append(joined([_frames_sentence(simulated, measured), direction], "; "))
     return replace(
         plain,
         fitted=fitted,
@@ -153,20 +155,25 @@ def compare_tracks(
     )
 
 
-def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
+def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, Message]:
     """Number of coordinates to compare (2: from above, 3: in space), and the reason in words."""
     if from_above:
-        return 2, "from above, as asked"
+        return 2, Message("from above, as asked")
     if not heights_agree:
-        return 2, "from above: heights in two frames are not the same"
+        return 2, Message("from above: heights in two frames are not the same")
     for track in (laid.simulated, laid.measured):
         usable, flat = int(track.usable.sum()), int((track.usable & ~np.isfinite(track.place[:, 2])).sum())
         if flat:
-            return 2, f"from above: {flat} of the {usable} points of {track.name} have no height"
-    return 3, "in space, heights included"
+            return 2, Message(
+                "from above: {flat} of the {usable} points of {name} have no height",
+                flat=flat,
+                usable=usable,
+                name=track.name,
+            )
+    return 3, Message("in space, heights included")
 
 
-def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[str, str], seen: str) -> Comparison:
+def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[str, str], seen: Message) -> Comparison:
     """Comparison by all three distances; `seen`: whether heights are used, in words."""
     simulated, measured = lines
     offsets = nearest_offsets(Path(simulated.place), measured)
@@ -177,15 +184,19 @@ def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[
         names=names,
         seen=seen,
         nearest=_make_distances(
-            "nearest", offsets, "all of the measured track lies ahead of the simulated one's ends: nothing is beside it"
+            "nearest",
+            offsets,
+            Message("all of the measured track lies ahead of the simulated one's ends: nothing is beside it"),
         ),
-        arc_length=_make_distances("arc_length", arc_length_offsets(simulated, measured), "neither has a length"),
+        arc_length=_make_distances(
+            "arc_length", arc_length_offsets(simulated, measured), Message("neither has a length")
+        ),
         time=_at_equal_time(simulated, measured, clock),
         largest_from_simulated=None if back is None else back.max,
     )
 
 
-def _make_distances(name: str, offsets: OffsetSeries | None, otherwise: str, *, origin: str = "") -> Distances:
+def _make_distances(name: str, offsets: OffsetSeries | None, otherwise: Message, *, origin: str = "") -> Distances:
     """Distances by the definition `name`; `otherwise`: reason if there are none; `origin`: zero of the clock."""
     numbers = None if offsets is None else distance_statistics(offsets)
     definition = DEFINITIONS[name].format(origin=origin)
@@ -198,8 +209,12 @@ def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Dis
     offsets = None if reason else time_offsets(simulated, measured, later=clock.ahead)
     if not reason and offsets is None:
         begins = measured.time[0] + clock.ahead - simulated.time[0]
-        reason = f"they are not on their way at one time (the measured one begins {begins:.6g} s later); {FIRST_POINTS}"
-    otherwise = reason or "the measured track stands still while both are on their way"
+        reason = Message(
+            "they are not on their way at one time (the measured one begins {begins:.6g} s later); let time be counted "
+            "from each track's first point, or fit the time",
+            begins=begins,
+        )
+    otherwise = reason or Message("the measured track stands still while both are on their way")
     return _make_distances("time", offsets, otherwise, origin=clock.origin)
 
 
@@ -231,53 +246,102 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
     return replace(moved_comparison, fitted=fitted)
 
 
-def _track_warnings(track: Track, dimensions: int) -> Iterator[str]:
+def _track_warnings(track: Track, dimensions: int) -> Iterator[Message]:
     """Warnings of points that are not compared, and of inexact places."""
     if without := int((~compared_points(track, dimensions=dimensions)).sum()):
-        flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "no place"
-        yield f"{track.name}: {without} of {len(track)} points are not compared ({flags})"
+        flags = [Message("{count} {code}", count=count, code=code) for code, count in track.flagged.items()]
+        yield Message(
+            "{name}: {without} of {points} points are not compared ({flags})",
+            name=track.name,
+            without=without,
+            points=len(track),
+            flags=flags or Message("no place"),
+        )
     if inexact := inexact_sentence(track.name, track.solution):
         yield inexact
 
 
-def _frames_sentence(simulated: Track, measured: Track) -> str:
+def _frames_sentence(simulated: Track, measured: Track) -> Message:
     """Sentence that two tracks have different frames."""
-    return f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; {measured.name}: {measured.frame})"
+    return Message(
+        "the tracks are not in one frame ({first}: {first_frame}; {second}: {second_frame})",
+        first=simulated.name,
+        first_frame=simulated.frame,
+        second=measured.name,
+        second_frame=measured.frame,
+    )
 
 
-def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Track, measured: Track) -> str:
+def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Track, measured: Track) -> Message:
     """Sentence on the direction of x of the track in the slope's axes, and on the inclination of the slope."""
     name = (simulated if measured.axes == "east_north_up" else measured).name
-    slope = "from above" if not laid.angle else f"on a slope of {laid.angle / DEGREE:.1f}° ({laid.source})"
+    error = Message("other directions fit too")
+    if fitted.turned_error is not None:
+        error = Message("± {error:.2g}°", error=fitted.turned_error / DEGREE)
     azimuth = (fitted.azimuth or 0.0) / DEGREE
-    error = "other directions fit too" if fitted.turned_error is None else f"± {fitted.turned_error / DEGREE:.2g}°"
-    return f"laid on the map {slope}, x of {name} points {azimuth:.1f}° from north ({error})"
+    if not laid.angle:
+        return Message(
+            "laid on the map from above, x of {name} points {azimuth:.1f}° from north ({error})",
+            name=name,
+            azimuth=azimuth,
+            error=error,
+        )
+    return Message(
+        "laid on the map on a slope of {angle:.1f}° ({source}), x of {name} points {azimuth:.1f}° from north ({error})",
+        angle=laid.angle / DEGREE,
+        source=laid.source,
+        name=name,
+        azimuth=azimuth,
+        error=error,
+    )
 
 
-def _result_warnings(comparison: Comparison) -> Iterator[str]:
+def _result_warnings(comparison: Comparison) -> Iterator[Message]:
     """Warnings of a short compared part, of a poorly determined heading, of another place that fits about as well."""
     whole, fitted = comparison.measured.length, comparison.fitted
     for name in DEFINITIONS:
         numbers = getattr(comparison, name).numbers
         if numbers is not None and numbers.compared < MOST_COMPARED * whole:
-            part = f"only {numbers.compared:.4g} of the {whole:.4g} m of the measured track could be compared"
-            yield f"{name.replace('_', ' ')}: {part}"
+            yield Message(
+                "{kind}: only {compared:.4g} of the {whole:.4g} m of the measured track could be compared",
+                kind=_KIND_WORDS[name],
+                compared=numbers.compared,
+                whole=whole,
+            )
     error, rival = (None, None) if fitted is None else (fitted.turned_error, fitted.rival)
     if error is not None and error > REPORTED_ERROR:
-        yield (
-            f"the fitted heading is uncertain: ± {error / DEGREE:.2g}° (95 %). Give the direction in which the slope "
-            "falls, or compare a longer stretch"
+        yield Message(
+            "the fitted heading is uncertain: ± {error:.2g}° (95 %). Give the direction in which the slope falls, or "
+            "compare a longer stretch",
+            error=error / DEGREE,
         )
-    if fitted is not None and rival is not None:
-        other, chosen = (f"{value.turned / DEGREE:.0f}°" for value in (rival, fitted))
-        there, here = (" and ".join(f"{value:.1f}" for value in one.moved[:2]) for one in (rival, fitted))
-        rms, own = amount(rival.rms, "m"), amount(fitted.rms, "m")
-        interval = " The heading has no interval." if error is None else ""
-        yield (
-            f"the place of the simulated track is uncertain: moved by {there} m and turned by {other}, instead of "
-            f"{here} m and {chosen}, it is about as near (rms {rms} instead of {own}, {100 * rival.share:.0f} % "
-            f"compared).{interval} Give the direction in which the slope falls, or compare a longer stretch"
+    if fitted is not None and rival is not None and fitted.rms is not None:
+        yield Message(
+            _OTHER_PLACE_WITHOUT_INTERVAL if error is None else _OTHER_PLACE,
+            other_x=float(rival.moved[0]),
+            other_y=float(rival.moved[1]),
+            other_turned=rival.turned / DEGREE,
+            x=fitted.moved[0],
+            y=fitted.moved[1],
+            turned=fitted.turned / DEGREE,
+            other_rms=rival.rms,
+            rms=fitted.rms,
+            share=100 * rival.share,
         )
+
+
+_OTHER_PLACE: Final = template(
+    "the place of the simulated track is uncertain: moved by {other_x:.1f} and {other_y:.1f} m and turned by "
+    "{other_turned:.0f}°, instead of {x:.1f} and {y:.1f} m and {turned:.0f}°, it is about as near (rms "
+    "{other_rms:.4g} m instead of {rms:.4g} m, {share:.0f} % compared). Give the direction in which the slope falls, "
+    "or compare a longer stretch"
+)
+_OTHER_PLACE_WITHOUT_INTERVAL: Final = template(
+    "the place of the simulated track is uncertain: moved by {other_x:.1f} and {other_y:.1f} m and turned by "
+    "{other_turned:.0f}°, instead of {x:.1f} and {y:.1f} m and {turned:.0f}°, it is about as near (rms "
+    "{other_rms:.4g} m instead of {rms:.4g} m, {share:.0f} % compared). The heading has no interval. Give the "
+    "direction in which the slope falls, or compare a longer stretch"
+)
 
 
 def place_accuracy(track: Track) -> float:

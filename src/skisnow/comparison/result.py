@@ -39,7 +39,7 @@ class Distances(Shown):
     definition: str
     apart: OffsetSeries | None
     numbers: DistanceStatistics | None
-    reason: str | None = None
+    reason: Message | None = None
 
     def _repr_facts(self) -> Facts:
         return Facts(self.in_words)
@@ -127,14 +127,14 @@ class Comparison(Shown):
     simulated: Polyline
     measured: Polyline
     names: tuple[str, str]
-    seen: str
+    seen: Message
     nearest: Distances
     arc_length: Distances
     time: Distances
     largest_from_simulated: float | None
     axes: Axes = "file"
     fitted: FittedOffsets | None = None
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Message, ...] = ()
     in_one_frame: bool = True
     known_to: float = 0.0
 
@@ -227,7 +227,6 @@ def _degrees(angle: float | None) -> float | None:
 
 
 TimeFrom: TypeAlias = Literal["first_point", "clock"]
-FIRST_POINTS: Final = "let time be counted from each track's first point, or fit the time"
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +240,7 @@ class Clock:
 
     ahead: float
     origin: str
-    reason: str | None = None
+    reason: Message | None = None
 
 
 def common_clock(simulated: Track, measured: Track, time_from: TimeFrom | None) -> Clock:
@@ -253,10 +252,18 @@ def common_clock(simulated: Track, measured: Track, time_from: TimeFrom | None) 
     if starts[0] is None and starts[1] is None:
         return Clock(measured.first_time - simulated.first_time, "zero of the seconds in both files")
     if starts[0] is None or starts[1] is None:
-        return Clock(0.0, "one clock", f"only one of them has a date; {FIRST_POINTS}")
+        reason = Message(
+            "only one of them has a date; let time be counted from each track's first point, or fit the time"
+        )
+        return Clock(0.0, "one clock", reason)
     if simulated.time_scale != measured.time_scale or (starts[0].tzinfo is None) != (starts[1].tzinfo is None):
-        scales = f"{simulated.time_scale} and {measured.time_scale}"
-        return Clock(0.0, "one clock", f"their clocks are not of one kind ({scales}); {FIRST_POINTS}")
+        reason = Message(
+            "their clocks are not of one kind ({first} and {second}); let time be counted from each track's first "
+            "point, or fit the time",
+            first=simulated.time_scale,
+            second=measured.time_scale,
+        )
+        return Clock(0.0, "one clock", reason)
     return Clock(first + (starts[1] - starts[0]).total_seconds(), "one clock, by the dates in both files")
 
 

@@ -70,7 +70,7 @@ def _reject_misspelt(path: Path, head: set[str]) -> None:
             ).tag("misspelled_column", path=path, column=name, similar=similar[0])
 
 
-def data_description(data: Data) -> str:
+def data_description(data: Data) -> Message:
     """Kind and size of the data recognised in a file, in words."""
     if isinstance(data, PhotoCells):
         return Message("photo-cell times (runs: {count})", count=len(data.runs))
@@ -123,9 +123,9 @@ class IdentificationData:
     starts: Mapping[str, Mapping[str, float]]
     fixed: Mapping[str, float]
     first_motions: Mapping[str, Mapping[str, float]]
-    descriptions: tuple[tuple[str, str], ...]
-    warnings: tuple[str, ...]
-    methods: tuple[str, ...]
+    descriptions: tuple[tuple[str, Message], ...]
+    warnings: tuple[Message, ...]
+    methods: tuple[Message, ...]
 
     @property
     def runs(self) -> tuple[str, ...]:
@@ -142,7 +142,7 @@ def collect_data(
     _require_different([datum for datum in data if isinstance(datum, str | Path)])
     measurements = [read_data(datum) if isinstance(datum, str | Path) else datum for datum in data]
     names: set[str] = set()
-    methods: list[str] = []
+    methods: list[Message] = []
     tracks = []
     for measurement in measurements:
         if isinstance(measurement, Track):
@@ -247,7 +247,7 @@ FARTHEST: Final = 50_000.0
 
 def move_to_scenario_frame(
     track: Track, scenario: ScenarioFile, site: Mapping[str, Any] | None
-) -> tuple[Track, list[str]]:
+) -> tuple[Track, list[Message]]:
     """Move a track to the slope's frame (x down the fall line, y to the left).
 
     track: track in any frame; a track in local metres is assumed to be in the slope's frame already.
@@ -276,7 +276,14 @@ def move_to_scenario_frame(
                 "{name} is {distance:.4g} km from the site of [identify.site]. It is from another place, or latitude "
                 "and longitude are swapped"
             ).tag("far_from_site", name=track.name, distance=distance / 1000.0)
-        beginning, method = np.zeros(3), f"tracks are counted from the site at {point}"
+        beginning = np.zeros(3)
+        method = Message(
+            "tracks are counted from the site at latitude {latitude:.12g}°, longitude {longitude:.12g}°, height "
+            "{height:.9g} m",
+            latitude=point.latitude_deg,
+            longitude=point.longitude_deg,
+            height=point.height,
+        )
     else:
         origin = np.nan_to_num(track.place[int(np.argmax(track.usable))])
         start = scenario.scenario.start
@@ -291,7 +298,9 @@ def move_to_scenario_frame(
     return replace(turned, place=turned.place + beginning), [method]
 
 
-_FROM_FIRST_POINT: Final = "the first point of each track is taken as the scenario's start; its error is in all points"
+_FROM_FIRST_POINT: Final = Message(
+    "the first point of each track is taken as the scenario's start; its error is in all points"
+)
 _START_OF_FIRST_POINT: Final = Message(
     "The first point of each track is taken as the scenario's start. Its error is in all points, and no interval "
     "counts it. Add start.x,start.y to --free, or give the place of the slope in [identify.site]."

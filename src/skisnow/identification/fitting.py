@@ -135,7 +135,9 @@ def identify(
             'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario'
         ).tag("nothing_free")
     fixed = [key for key in tables if key.partition("@")[0] not in {free.partition("@")[0] for free in keys}]
-    unused = f"{', '.join(fixed)} have a table under [identify] but are not free. They keep the scenario's values"
+    unused = Message(
+        "{keys} have a table under [identify] but are not free. They keep the scenario's values", keys=fixed
+    )
     measurements = collect_data(
         scenario_input, scenario_file, [data] if isinstance(data, Data | str | Path) else data, keys
     )

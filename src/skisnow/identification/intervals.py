@@ -23,11 +23,11 @@ PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)
 """Positions of the values of a profile, in standard errors from the best value."""
 REFITS: Final = 2
 """Number of Gauss-Newton steps of the other parameters at each value, with the Jacobian of the best place."""
-QUADRATIC_POSTERIOR: Final = (
+QUADRATIC_POSTERIOR: Final = Message(
     "posterior: emcee on the likelihood of residuals that are quadratic in each parameter (from the runs of the last "
     "Jacobian), for a simulated run takes too long; terms that mix two parameters are linear"
 )
-EXACT_POSTERIOR: Final = "posterior: emcee on the likelihood itself"
+EXACT_POSTERIOR: Final = Message("posterior: emcee on the likelihood itself")
 _WALKERS_PER_PARAMETER: Final = 4
 _BURN_IN: Final = 0.3
 _SMALL_BALL: Final = 0.5
@@ -137,7 +137,7 @@ def require_emcee() -> Any:
 
 def posterior_places(
     solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
-) -> tuple[FloatArray | None, str]:
+) -> tuple[FloatArray | None, Message]:
     """About `samples` samples (N, p) on the scale of the search, and a sentence on the method.
 
     Noise is normal with the stated or estimated standard deviation. Parameters without a prior have a flat one inside
@@ -146,7 +146,7 @@ def posterior_places(
     emcee = require_emcee()
     uncertainty = solution.uncertainty()
     if uncertainty is None or uncertainty.groups:
-        return None, "no posterior: the data leave a parameter open"
+        return None, Message("no posterior: the data leave a parameter open")
     simulated = any(observation.kind == "track" for observation in solution.problem.observations)
     likelihood = _quadratic_likelihood(solution) if simulated else _exact_likelihood(solution)
     p = len(solution.optimum.place)
@@ -250,7 +250,11 @@ def add_bootstrap_intervals(identification: Identification, solution: Solution, 
         lost = sum(not np.isfinite(sample.cost) for sample in samples)
         samples = [sample for sample in samples if np.isfinite(sample.cost)]
     if lost:
-        warning = f"{lost} of {plan.bootstrap} resamples of the bootstrap could not be computed"
+        warning = Message(
+            "{lost} of {resamples} resamples of the bootstrap could not be computed",
+            lost=lost,
+            resamples=plan.bootstrap,
+        )
         identification = replace(identification, warnings=(*identification.warnings, warning))
     if len(samples) < FEWEST:
         return identification
@@ -261,7 +265,9 @@ def add_bootstrap_intervals(identification: Identification, solution: Solution, 
         else replace(parameter, bootstrap_interval=(float(low), float(high)))
         for parameter, (low, high) in zip(identification.parameters, percentile_interval(values), strict=True)
     )
-    how = "refitted" if plan.bootstrap_by == "refit" else Message("fitted by the model linearised at the best values")
+    how = Message("refitted")
+    if plan.bootstrap_by == "linear":
+        how = Message("fitted by the model linearised at the best values")
     method = Message(
         "bootstrap: {n_samples} resamples of stretches of residuals, each {how}", n_samples=len(samples), how=how
     )

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 from ..scenario import Plane, ScenarioFile
 from .data_tables import PhotoCellRun, PhotoCells
@@ -89,12 +90,17 @@ class PhotoCellTimes:
             fits.append(Fit(name=run.name, kind="photo_cells", along=station, labels=("time (s)",), **columns))
         return tuple(fits)
 
-    def warnings(self, values: Values) -> tuple[str, ...]:  # noqa: ARG002 - the same for all values
+    def warnings(self, values: Values) -> tuple[Message, ...]:  # noqa: ARG002 - the same for all values
         """Warning if the scenario's heading has no effect."""
         if self.scenario.scenario.start.heading == 0.0:
             return ()
         heading = self.scenario.scenario.start.heading / DEGREE
-        return (f"the scenario's heading of {heading:g}° plays no part: photo cells stand down the fall line",)
+        return (
+            Message(
+                "the scenario's heading of {heading:g}° plays no part: photo cells stand down the fall line",
+                heading=heading,
+            ),
+        )
 
     def _cells_after_start(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Stations (m), times and standard deviations (s); a cell at 0 m only if the clock is free."""

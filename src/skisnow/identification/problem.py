@@ -10,6 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import ShownFields
 from ..parameters import suggest_and_list
 from ..scenario.keys import EACH
@@ -151,7 +152,7 @@ class Observations(Protocol):
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Measured and fitted values of each run."""
 
-    def warnings(self, values: Values) -> tuple[str, ...]:
+    def warnings(self, values: Values) -> tuple[Message, ...]:
         """Warnings about these data at these parameters."""
 
 

@@ -22,7 +22,7 @@ from .problem import Fit
 Interval: TypeAlias = tuple[float | None, float | None]
 Outcome: TypeAlias = Literal["converged", "not_converged", "not_identifiable", "too_few_points", "interrupted"]
 
-REASONS: dict[Outcome, str] = {
+REASONS: dict[Outcome, Message] = {
     "converged": Message(
         "The search ended: no step brings the computed nearer to the measured by more than its noise."
     ),
@@ -152,7 +152,7 @@ class Identification(Shown):
     """
 
     outcome: Outcome
-    reason: str
+    reason: Message
     scenario: str
     parameters: tuple[Identified, ...]
     correlation: FloatArray
@@ -161,15 +161,15 @@ class Identification(Shown):
     accuracy_is_stated: bool = True
     points: int = 0
     degrees_of_freedom: int = 0
-    warnings: tuple[str, ...] = ()
-    methods: tuple[str, ...] = ()
+    warnings: tuple[Message, ...] = ()
+    methods: tuple[Message, ...] = ()
     fits: tuple[Fit, ...] = ()
     starts: tuple[tuple[FloatArray, float | None], ...] = ()
     profiles: tuple[Profile, ...] = ()
     bootstrap: FloatArray | None = None
     posterior: FloatArray | None = None
     effort: Effort = field(default_factory=Effort)
-    data: tuple[tuple[str, str], ...] = ()
+    data: tuple[tuple[str, Message], ...] = ()
 
     def _repr_facts(self) -> Facts:
         """Title with outcome, scenario and number of points, and a row for each parameter."""

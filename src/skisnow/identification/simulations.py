@@ -174,7 +174,7 @@ def perturbed_tasks(task: RunTask, values: Mapping[str, float], *, together: boo
 
 def grip_limit_sentences(
     task: RunTask, values: Mapping[str, float], simulate: Callable[[Sequence[RunTask]], list[Row]]
-) -> tuple[str, ...]:
+) -> tuple[Message, ...]:
     """Warning as of `simulate --verify` if small changes of the inputs move the end of the run too far.
 
     Each input is changed separately only if the ends of two runs with all inputs changed are apart by half as much.

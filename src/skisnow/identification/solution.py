@@ -10,7 +10,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from .._support.arrays import FloatArray
-from .._support.messages import Message
+from .._support.messages import Message, template
 from .parameter import bounds_of
 from .problem import Problem
 from .result import REASONS, Effort, Identification, Identified, Outcome
@@ -46,8 +46,8 @@ class SearchRequest:
     rng: np.random.Generator
     progress: Progress
     bootstrap_by: BootstrapBy = "refit"
-    warnings: tuple[str, ...] = ()
-    methods: tuple[str, ...] = ()
+    warnings: tuple[Message, ...] = ()
+    methods: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class Solution:
     problem: Problem
     optimum: SearchState
     tried: tuple[tuple[FloatArray, float | None], ...]
-    methods: tuple[str, ...]
+    methods: tuple[Message, ...]
     options: SearchOptions
 
     @property
@@ -131,16 +131,35 @@ def build_identification(solution: Solution, plan: SearchRequest) -> Identificat
     )
 
 
+_TOO_FEW: Final = {
+    (False, True): template(
+        "{points} points are too few for {parameters} parameters: at least {needed} are needed, and ten or more are "
+        "worth having. Free fewer parameters, measure more, or give priors"
+    ),
+    (True, True): template(
+        "{points} points are too few for {parameters} parameters and {clocks} clocks: at least {needed} are needed, "
+        "and ten or more are worth having. Free fewer parameters, measure more, or give priors"
+    ),
+    (False, False): template(
+        "{points} points are too few for {parameters} parameters: at least {needed} are needed, one of them for the "
+        "noise, which is not stated, and ten or more are worth having. Free fewer parameters, measure more, or give "
+        "priors"
+    ),
+    (True, False): template(
+        "{points} points are too few for {parameters} parameters and {clocks} clocks: at least {needed} are needed, "
+        "one of them for the noise, which is not stated, and ten or more are worth having. Free fewer parameters, "
+        "measure more, or give priors"
+    ),
+}
+"""Warning of too few points: with free clocks or without, with stated noise or without."""
+
+
 def too_few_points(problem: Problem, plan: SearchRequest) -> Identification:
     """Result without estimates: fewer points than free parameters."""
     p = len(problem.parameters)
     needed = p + problem.nuisances + (not problem.accuracy_is_stated)
-    warning = (
-        f"{problem.points} points are too few for {p} parameters"
-        f"{f' and {problem.nuisances} clocks' if problem.nuisances else ''}: at least {needed} are needed"
-        f"{'' if problem.accuracy_is_stated else ', one of them for the noise, which is not stated'}, and ten or more "
-        "are worth having. Free fewer parameters, measure more, or give priors"
-    )
+    sentence = _TOO_FEW[problem.nuisances > 0, problem.accuracy_is_stated]
+    warning = Message(sentence, points=problem.points, parameters=p, clocks=problem.nuisances, needed=needed)
     return Identification(
         outcome="too_few_points",
         reason=REASONS["too_few_points"],
@@ -178,7 +197,7 @@ def _identified_parameters(solution: Solution, spread: Uncertainty | None) -> It
         )
 
 
-def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator[str]:
+def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator[Message]:
     """Warnings of few data, unknown or correlated parameters, bounds, an unfinished search and bad residuals."""
     parameters, points = solution.problem.parameters, solution.problem.points
     if points < max(10, 3 * len(parameters)):
@@ -194,13 +213,15 @@ def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator
     for identified in _identified_parameters(solution, spread):
         if identified.at_bound:
             bounded = identified.parameter
-            unit = f" {bounded.unit}" if bounded.unit else ""
-            yield (
-                f"{bounded.name} sits on its bound ({bounded.lower:g} to {bounded.upper:g}{unit}): its interval by "
-                "curvature does not hold there; --profile gives one that does"
+            bounds = Message("{lower:g} to {upper:g}", lower=bounded.lower, upper=bounded.upper)
+            yield Message(
+                "{name} sits on its bound ({bounds}): its interval by curvature does not hold there; --profile gives "
+                "one that does",
+                name=bounded.name,
+                bounds=Message("{number} {unit}", number=bounds, unit=bounded.unit) if bounded.unit else bounds,
             )
     if solution.optimum.state == "interrupted":
-        yield "the search had not ended: intervals and correlations are those of a place on the way"
+        yield Message("the search had not ended: intervals and correlations are those of a place on the way")
         return
     if solution.widening > 1.0:
         yield Message(
@@ -236,37 +257,39 @@ def _neighbour_correlation(solution: Solution) -> float | None:
     return correlation if correlation > max(REPORTED_CORRELATION, 3.0 / np.sqrt(pairs)) else None
 
 
-def _multistart_warnings(solution: Solution) -> Iterator[str]:
+def _multistart_warnings(solution: Solution) -> Iterator[Message]:
     """Warnings of failed starts, and of searches that ended in a worse minimum."""
     costs = [cost for _, cost in solution.tried if cost is not None]
     missing = len(solution.tried) - len(costs)
     if missing:
-        yield f"{missing} of {len(solution.tried)} starts could not be computed"
+        yield Message("{missing} of {starts} starts could not be computed", missing=missing, starts=len(solution.tried))
     if len(costs) < 2:
         return
     dof = max(solution.degrees_of_freedom, 1)
     unit = 1.0 if solution.problem.accuracy_is_stated else min(costs) / dof
     apart = sum(cost - min(costs) > 4.0 * unit for cost in costs)
     if apart:
-        yield (
-            f"{apart} of {len(costs)} searches ended elsewhere, with a worse fit: there are several minima; look at "
-            "the best values with care, or try more starts"
+        yield Message(
+            "{apart} of {searches} searches ended elsewhere, with a worse fit: there are several minima; look at the "
+            "best values with care, or try more starts",
+            apart=apart,
+            searches=len(costs),
         )
 
 
-def _interval_methods(solution: Solution) -> Iterator[str]:
+def _interval_methods(solution: Solution) -> Iterator[Message]:
     """Sentences about how the intervals were computed; none without derivatives."""
     if solution.optimum.jacobian is None:
         return
     law = Message("the normal distribution")
     if solution.estimates_noise:
         law = Message("Student's t with the noise that the residuals show")
-    stated = Message("stated by the data") if solution.problem.accuracy_is_stated else "estimated"
+    stated = Message("stated by the data") if solution.problem.accuracy_is_stated else Message("estimated")
     yield Message(
         "95 % intervals from the curvature of the sum of squares, by {law}; accuracy {stated}", law=law, stated=stated
     )
     if len(solution.tried) > 1:
-        yield f"{len(solution.tried)} starts"
+        yield Message("{starts} starts", starts=len(solution.tried))
 
 
 def best_fit_residuals(solution: Solution) -> Callable[[Sequence[FloatArray]], list[FloatArray | None]]:

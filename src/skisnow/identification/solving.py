@@ -43,7 +43,9 @@ def solve(problem: Problem, plan: SearchRequest) -> Identification:
         if plan.posterior:
             identification = add_posterior_intervals(identification, solution, plan)
     except KeyboardInterrupt:
-        warning = "The requested further intervals were interrupted; values and intervals by curvature are complete"
+        warning = Message(
+            "The requested further intervals were interrupted; values and intervals by curvature are complete"
+        )
         return replace(identification, outcome="interrupted", warnings=(*identification.warnings, warning))
     return identification
 
@@ -63,7 +65,7 @@ class Solver:
     problem: Problem
     plan: SearchRequest
     tried: list[tuple[FloatArray, float | None]] = field(default_factory=list)
-    methods: list[str] = field(default_factory=list)
+    methods: list[Message] = field(default_factory=list)
 
     def solution(self) -> Solution:
         """The best place, with derivatives in standard deviations of the data."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message, template
+from .._support.messages import Message, outcome_words, template
 from .._support.processes.kept_rows import Row
 from ..track.track import Track, inexact_sentence
 from .problem import Fit, Kind, Values, run_values
@@ -52,7 +52,7 @@ class TrackPoints:
     speed_sd: FloatArray
     stated: bool
     left_out: int
-    inexact: str | None = None
+    inexact: Message | None = None
 
     @property
     def length(self) -> float:
@@ -162,30 +162,36 @@ class TrackPositions:
             for track, row in zip(self.tracks, rows, strict=True) if "x_m" in row
         )  # fmt: skip
 
-    def warnings(self, values: Values) -> tuple[str, ...]:
+    def warnings(self, values: Values) -> tuple[Message, ...]:
         """Warnings: unused points, a run that ends early, outliers, a run near the limit of grip."""
-        warnings = []
+        warnings: list[Message] = []
         rows = self.simulate(self._run_tasks(values, final=True))
         for track, row in zip(self.tracks, rows, strict=True):
             if track.left_out:
-                warnings.append(f"{track.name}: {track.left_out} points are marked as unusable and were left out")
+                warnings.append(
+                    Message(
+                        "{name}: {points} points are marked as unusable and were left out",
+                        name=track.name,
+                        points=track.left_out,
+                    )
+                )
             if track.inexact:
                 warnings.append(track.inexact)
             warnings += _result_warnings(track, row)
         return (*warnings, *self._near_limit(values))
 
-    def _near_limit(self, values: Values) -> list[str]:
+    def _near_limit(self, values: Values) -> list[Message]:
         """Warnings of runs near the limit of grip; Ctrl-C ends this check and keeps the identified values."""
         if not self.scenario_values:
             return []
         try:
             return [
-                f"{track.name}: {text}"
+                Message("{name}: {text}", name=track.name, text=text)
                 for track, task in zip(self.tracks, self._run_tasks(values, final=False), strict=True)
                 for text in grip_limit_sentences(task, self.scenario_values, self.simulate)
             ]
         except KeyboardInterrupt:
-            return ["whether the run is near the limit of grip was not checked: interrupted"]
+            return [Message("whether the run is near the limit of grip was not checked: interrupted")]
 
     def _run_tasks(self, values: Values, *, final: bool) -> list[RunTask]:
         """One task for each track, with its values; `final`: at the accuracy of a final run."""
@@ -206,34 +212,45 @@ def _track_residuals(track: TrackPoints, row: Row) -> FloatArray | None:
     return np.concatenate([away[:, 0], away[:, 1], speed])
 
 
-def _result_warnings(track: TrackPoints, row: Row) -> list[str]:
+def _result_warnings(track: TrackPoints, row: Row) -> Iterator[Message]:
     """Warnings of a failed run, an open energy balance, an early end, and outliers."""
     if "x_m" not in row:
-        return [f"{track.name}: no run can be simulated with these values: {row.get('reason', '')}"]
-    warnings = []
+        yield Message(
+            "{name}: no run can be simulated with these values: {reason}",
+            name=track.name,
+            reason=row.get("reason", ""),
+        )
+        return
     if row["outcome"] == "energy_open":
-        warnings.append(
-            f"{track.name}: the balance of energy of the simulated run stays open by more than 0.5 %: what was found "
-            "rests on a run that is not to be trusted. Take smaller steps, or the error control"
+        yield Message(
+            "{name}: the balance of energy of the simulated run stays open by more than 0.5 %: what was found rests on "
+            "a run that is not to be trusted. Take smaller steps, or the error control",
+            name=track.name,
         )
     if row["reached"] < len(track.time):
-        warnings.append(
-            f"{track.name}: the simulated run ends early ({row['outcome'].replace('_', ' ')}); "
-            f"{len(track.time) - row['reached']} points lie behind its end, where it was taken to go on straight"
+        yield Message(
+            "{name}: the simulated run ends early ({outcome}); {points} points lie behind its end, where it was taken "
+            "to go on straight",
+            name=track.name,
+            outcome=outcome_words(row["outcome"]),
+            points=len(track.time) - row["reached"],
         )
     residual = _track_residuals(track, row)
     if residual is not None:
         spread = float(np.median(np.abs(residual))) / _MEDIAN_OF_NORMAL
         far = int(np.sum(np.abs(residual) > _OUTLIER * max(spread, 1e-12)))
         if far:
-            warnings.append(
-                f"{track.name}: {far} of {len(residual)} residuals are beyond {_OUTLIER:g} times the usual: bad "
-                "points, or a stretch where the model does not hold; look at the figure of residuals"
+            yield Message(
+                "{name}: {far} of {count} residuals are beyond {factor:g} times the usual: bad points, or a stretch "
+                "where the model does not hold; look at the figure of residuals",
+                name=track.name,
+                far=far,
+                count=len(residual),
+                factor=_OUTLIER,
             )
-    return warnings
 
 
-def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_free: bool) -> str | None:
+def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_free: bool) -> Message | None:
     """Check the distance between a track's first point and the start; return a warning if the fixed start is off."""
     away = math.hypot(track.place[0, 0] - start[0], track.place[0, 1] - start[1])
     if away > max(FARTHEST_START, track.length):
@@ -244,9 +261,11 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
             "in m, from the slope's own origin, or set start.x_m and start.y_m"
         ).tag("other_place", name=track.name, distance=distance, start_x=start[0], start_y=start[1], length=length)
     if away > NEAR_START and not start_is_free:
-        return (
-            f"{track.name} begins {away:.2g} m from the scenario's start, which is not free. Free start.x_m and "
-            "start.y_m, or set them"
+        return Message(
+            "{name} begins {distance:.2g} m from the scenario's start, which is not free. Free start.x_m and "
+            "start.y_m, or set them",
+            name=track.name,
+            distance=away,
         )
     return None
 

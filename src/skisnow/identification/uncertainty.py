@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Final
 
 import numpy as np
@@ -75,6 +76,7 @@ _ALONE: Final = {
     ),
     "snow.unloading_ratio": Message("The path hardly depends on how the groove springs back. Fix it"),
 }
+_FIX_IT: Final = Message("Fix it, or give it a prior from elsewhere")
 _COMMON: Final = Message("fix one of them, give it a prior from elsewhere, or add a run in which they act differently")
 
 
@@ -142,7 +144,7 @@ def linear_uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None
     return Uncertainty(covariance, correlation, factor, unknown, groups, single_errors)
 
 
-def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[str]:
+def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[Message]:
     """Warning of each pair of parameters that the data hardly distinguish."""
     for i, one in enumerate(parameters):
         for j in range(i):
@@ -155,7 +157,7 @@ def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArra
                 )  # fmt: skip
 
 
-def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> Iterator[str]:
+def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> Iterator[Message]:
     """Warning of each parameter or group of parameters that the data do not determine."""
     named: set[int] = set()
     for group in spread.groups:
@@ -168,31 +170,37 @@ def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> It
                 single_help=_single_help(alone),
             )
         else:
-            names = " and ".join(parameters[j].name for j in group)
+            names = _enumeration([parameters[j].name for j in group])
             helps = _pair_help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
             yield Message("{names} cannot be distinguished by these data: {helps}", names=names, helps=helps)
     for j in np.flatnonzero(spread.unknown).tolist():
         if j in named:
             continue
         close = [i for i, r in enumerate(spread.correlation[j]) if i != j and abs(r) > REPORTED_PAIR_CORRELATION]
-        names = " and ".join(parameters[i].name for i in close)
-        reason = "It would be known if the others were: fix some of them, or give them priors from elsewhere"
+        reason = Message("It would be known if the others were: fix some of them, or give them priors from elsewhere")
         if spread.factor * spread.alone[j] > WIDEST_HALF_INTERVAL:  # not even with all others known
             reason = _single_help(parameters[j])
         elif close:
-            reason = f"It would be known if {names} were: what one does the other can do"
-        yield (
-            f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could have. "
-            f"{reason}"
+            names = _enumeration([parameters[i].name for i in close])
+            reason = Message("It would be known if {names} were: what one does the other can do", names=names)
+        yield Message(
+            "{name} is left open by these data: its interval is as wide as all values it could have. {reason}",
+            name=parameters[j].name,
+            reason=reason,
         )
 
 
-def _pair_help(one: Parameter, other: Parameter) -> str:
+def _enumeration(names: Sequence[str]) -> str:
+    """Names with "and" between them."""
+    return reduce(lambda before, name: Message("{before} and {name}", before=before, name=name), names)
+
+
+def _pair_help(one: Parameter, other: Parameter) -> Message:
     """Advice for two parameters that the data cannot separate."""
     keys = frozenset(parameter.key.partition("@")[0] for parameter in (one, other))
     return _HELPS.get(keys, _COMMON)
 
 
-def _single_help(one: Parameter) -> str:
+def _single_help(one: Parameter) -> Message:
     """Advice for a parameter that the data cannot determine."""
-    return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere")
+    return _ALONE.get(one.key.partition("@")[0], _FIX_IT)

@@ -10,6 +10,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from .._support.messages import Message
 from .._support.units import CM, Facts, Shown, amount
 from .._support.user_files.json_text import json_number
 from ..parameters import values_of
@@ -168,14 +169,19 @@ def limit_warnings(run: Run, refinements: Iterable[Refinement]) -> tuple[str, ..
     return limit_sentences({refinement.key: refinement.end_moves or 0.0 for refinement in refinements}, run.run_length)
 
 
-def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...]:
+def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[Message, ...]:
     """Warning of `limit_warnings` from the shifts (m) of the end by key and the run's length (m); () if none."""
     worst = max((key for key in moves if key in NUDGED), key=lambda key: moves[key], default=None)
     if worst is None or not moves[worst] > NEAR * NUDGE * length:
         return ()
     return (
-        f"near the limit of grip: the end moves {moves[worst]:.2g} m for {100.0 * NUDGE:g} % of {worst}. A run "
-        "there shows a possible end and does not predict it: look at many, over what the inputs leave open",
+        Message(
+            "near the limit of grip: the end moves {move:.2g} m for {change:g} % of {key}. A run there shows a "
+            "possible end and does not predict it: look at many, over what the inputs leave open",
+            move=moves[worst],
+            change=100.0 * NUDGE,
+            key=worst,
+        ),
     )
 
 

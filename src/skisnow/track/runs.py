@@ -10,6 +10,7 @@ from typing import Final, Literal
 import numpy as np
 
 from .._support.arrays import FloatArray
+from .._support.messages import Message
 from .._support.units import STANDARD_GRAVITY, ShownFields
 from .curvature import TrackMotion, running_mean, segments
 from .track import Track
@@ -65,7 +66,7 @@ class Day(ShownFields):
     runs: tuple[Stretch, ...]
     lifts: tuple[Stretch, ...]
     split_by: Literal["height", "motion"]
-    remarks: tuple[str, ...]
+    remarks: tuple[Message, ...]
 
 
 def split_day(track: Track, motion: TrackMotion) -> Day:
@@ -87,7 +88,10 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     corners = turning_points(smooth, LEAST_HEIGHT)
     changes = np.diff(smooth[corners])
     if not np.any(np.abs(changes) >= LEAST_HEIGHT):
-        words = f"The height changes by less than {LEAST_HEIGHT:g} m: every stretch in motion is taken as a run."
+        words = Message(
+            "The height changes by less than {height:g} m: every stretch in motion is taken as a run.",
+            height=LEAST_HEIGHT,
+        )
         return Day(tuple(_moving_stretches(track, motion, height)), (), "motion", (*remarks, words))
     ascents = [
         (low, high)
@@ -106,17 +110,21 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
     return Day(tuple(runs), tuple(lifts), "height", remarks)
 
 
-def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[str, ...]]:
+def height_or_reason(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[Message, ...]]:
     """Height (n,) (m), interpolated over holes; or None with a sentence that explains why it is unknown."""
     recorded = np.isfinite(track.place[:, 2])
     if track.axes == "slope":
-        return None, ("The track's third axis is that of the slope, not the height: descents are unknown.",)
+        return None, (Message("The track's third axis is that of the slope, not the height: descents are unknown."),)
     if np.count_nonzero(recorded) < max(2, len(track) // _SPARSE):
-        return None, ("No heights in the track: lifts cannot be distinguished from runs, descents are unknown.",)
+        return None, (
+            Message("No heights in the track: lifts cannot be distinguished from runs, descents are unknown."),
+        )
     height = np.interp(np.arange(len(track)), np.flatnonzero(recorded), track.place[recorded, 2])
     arc_length = float(motion.arc_length[-1] - motion.arc_length[0])
     if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * arc_length:
-        return None, ("The third axis hardly changes: it is taken as the slope's own, and descents are unknown.",)
+        return None, (
+            Message("The third axis hardly changes: it is taken as the slope's own, and descents are unknown."),
+        )
     return height, ()
 
 

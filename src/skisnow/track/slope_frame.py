@@ -11,6 +11,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE
 from .track import Track
 
@@ -180,15 +181,15 @@ class LaidTracks(NamedTuple):
 
     simulated, measured: the tracks.
     angle: rad or None, inclination by which one was rotated; None if it is unknown or was not needed.
-    source: source of the inclination, in words.
+    source: source of the inclination, in words; None if `angle` is None.
     warnings: sentences on inclinations that disagree, or are unknown.
     """
 
     simulated: Track
     measured: Track
     angle: float | None = None
-    source: str = ""
-    warnings: tuple[str, ...] = ()
+    source: Message | None = None
+    warnings: tuple[Message, ...] = ()
 
 
 def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) -> LaidTracks:
@@ -205,23 +206,30 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
     falls = None if other is None else other.angle - (own.angle if own else 0.0)
     steeper = other is not None and other.exceeds(own.angle if own else 0.0)
     apart = measured.axes == "east_north_up" != simulated.axes
-    angle, source = slope_angle, "as given"
+    angle, source = slope_angle, Message("as given")
     if angle is None and simulated.slope_angle is not None and (apart or steeper):
-        angle, source = simulated.slope_angle, f"of {simulated.name}"
+        angle, source = simulated.slope_angle, Message("of {name}", name=simulated.name)
     if angle is None and falls is not None and other is not None and (steeper or (apart and other.error < DEGREE)):
-        angle, source = max(falls, 0.0), f"from the heights of {measured.name}"
+        angle, source = max(falls, 0.0), Message("from the heights of {name}", name=measured.name)
     if angle is None:
-        unknown = (
-            f"the slope's angle is unknown: metres of {simulated.name} on the slope are compared with shorter metres "
-            "on the map. Give the slope's angle"
+        unknown = Message(
+            "the slope's angle is unknown: metres of {name} on the slope are compared with shorter metres on the map. "
+            "Give the slope's angle",
+            name=simulated.name,
         )
         return LaidTracks(simulated, measured, warnings=(unknown,) if apart else ())
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Message, ...] = ()
     # in its own axes a track falls along a profile, whose z is the height, but not in a slope's axes
     own_fall = own.angle if own is not None and not simulated.slope_angle else 0.0
     if other is not None and abs(other.angle - angle - own_fall) > CLEARLY * max(other.error, DEGREE):
         warnings = (
-            f"{measured.name} falls by {other.angle / DEGREE:.1f}°, the slope by {angle / DEGREE:.1f}° ({source}): "
-            "check the slope's angle and the heights, or compare from above",
+            Message(
+                "{name} falls by {fall:.1f}°, the slope by {angle:.1f}° ({source}): check the slope's angle and the "
+                "heights, or compare from above",
+                name=measured.name,
+                fall=other.angle / DEGREE,
+                angle=angle / DEGREE,
+                source=source,
+            ),
         )
     return LaidTracks(lay_on_slope(simulated, angle) if angle else simulated, measured, angle, source, warnings)

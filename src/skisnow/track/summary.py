@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any, Final
@@ -9,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, count_message
 from .._support.units import DEGREE, Facts, Shown, amount
 from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
@@ -20,6 +22,12 @@ from .turns import Turn, find_turns
 SCHEMA_VERSION: Final = 1
 _APART: Final = 0.03
 """Relative difference of two distances of a track above which a remark is given."""
+
+_SOURCE_WORDS: Final = {
+    "places": Message("places"),
+    "recorded speed": Message("recorded speed"),
+    "odometer": Message("odometer"),
+}
 
 Json = dict[str, Any]
 
@@ -60,7 +68,7 @@ class TrackSummary(Shown):
     max_speed_interval: tuple[float, float] | None
     distance_interval: tuple[float, float] | None
     horizontal_distance: Interval | None
-    remarks: tuple[str, ...]
+    remarks: tuple[Message, ...]
 
     def _repr_facts(self) -> Facts:
         """Title, and rows with points, distance, highest speed, runs, turns and remarks."""
@@ -145,26 +153,32 @@ def _distances_by_source(track: Track, motion: TrackMotion) -> dict[str, float]:
     return {name: float(arc_length[-1] - arc_length[0]) for name, arc_length in ways.items()}
 
 
-def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
+def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> Iterator[Message]:
     """Remarks about omitted points, contradicting distances, missing speeds, segments and gaps."""
-    remarks = [f"Not used: {count} {words}." for words, count in track.left_out.items()]
+    for words, count in track.left_out.items():
+        yield Message("Not used: {count} {words}.", count=count, words=words)
     chosen = distances[motion.arc_length_source]
     for name, distance in distances.items():
         if chosen > 0.0 and abs(distance - chosen) > _APART * chosen:
-            remarks.append(
-                f"The distance by {name}, {distance:.0f} m, is not that by {motion.arc_length_source}, {chosen:.0f} m; "
-                "the latter counts."
+            yield Message(
+                "The distance by {name}, {distance:.0f} m, is not that by {source}, {chosen:.0f} m; the latter counts.",
+                name=_SOURCE_WORDS[name],
+                distance=distance,
+                source=_SOURCE_WORDS[motion.arc_length_source],
+                chosen=chosen,
             )
     if motion.speed_source == "fitted":
-        remarks.append("No speeds in the track: they are estimated from the places.")
+        yield Message("No speeds in the track: they are estimated from the places.")
     pauses = int(segments(track)[-1])
     if pauses:
-        remarks.append(f"{pauses + 1} segments: nothing between them counts as path.")
+        yield Message("{segments} segments: nothing between them counts as path.", segments=pauses + 1)
     gaps = int(np.count_nonzero(np.diff(motion.smoothed.part))) - pauses
     if gaps > 0:
-        count = "1 gap" if gaps == 1 else f"{gaps} gaps"
-        remarks.append(f"{count}: nothing is smoothed across, and the path over it is straight.")
-    return tuple(remarks)
+        yield count_message(
+            "{count} gap: nothing is smoothed across, and the path over it is straight.",
+            "{count} gaps: nothing is smoothed across, and the path over it is straight.",
+            count=gaps,
+        )
 
 
 def summary_dict(summary: TrackSummary) -> Json:

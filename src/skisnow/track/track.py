@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from .._support.units import Facts, Shown, amount, ends
 from .projection import GeodeticPoint, place_from_origin
 
@@ -80,7 +81,7 @@ class Track(Shown):
     place: FloatArray
     speed: FloatArray
     time_scale: str
-    frame: str = "x, y, z of the file, in m"
+    frame: str = Message("x, y, z of the file, in m")
     velocity: FloatArray | None = None
     place_sd: FloatArray | None = None
     speed_sd: FloatArray | None = None
@@ -94,8 +95,8 @@ class Track(Shown):
     first_time: float = 0.0
     speed_kind: str = "as recorded"
     further_columns: tuple[str, ...] = ()
-    left_out: Mapping[str, int] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    left_out: Mapping[Message, int] = field(default_factory=dict)
+    notes: tuple[Message, ...] = ()
 
     def __len__(self) -> int:
         return len(self.time)
@@ -299,18 +300,29 @@ def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
     return {name: count for name, count in counts.items() if count}
 
 
-def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
+_INEXACT: Final = {
+    (True, True): template(
+        "{name}: of {points} points {floating} float (decimetres off) and {code} by the code alone (metres off); the "
+        "others are fixed"
+    ),
+    (True, False): template("{name}: of {points} points {floating} float (decimetres off); the others are fixed"),
+    (False, True): template("{name}: of {points} points {code} by the code alone (metres off); the others are fixed"),
+}
+"""Warning of float solutions, of code solutions, or of both."""
+
+
+def inexact_sentence(name: str, solution: SolutionArray | None) -> Message | None:
     """Warning if only some points of a track are fixed solutions, otherwise None.
 
     >>> inexact_sentence("a.ubx", np.array(["fixed", "float", "code", "fixed"]))
     'a.ubx: of 4 points 1 float (decimetres off) and 1 by the code alone (metres off); the others are fixed'
     """
     counts = solution_counts(solution) or {}
-    words = {"float": "float (decimetres off)", "code": "by the code alone (metres off)"}
-    counted = [f"{counts[kind]} {text}" for kind, text in words.items() if counts.get(kind)]
-    if not counted or not counts.get("fixed"):
+    floating, code = counts.get("float", 0), counts.get("code", 0)
+    if not (floating or code) or not counts.get("fixed"):
         return None
-    return f"{name}: of {sum(counts.values())} points {' and '.join(counted)}; the others are fixed"
+    sentence = _INEXACT[floating > 0, code > 0]
+    return Message(sentence, name=name, points=sum(counts.values()), floating=floating, code=code)
 
 
 def _has_carrier_phase(solution: SolutionArray) -> bool:

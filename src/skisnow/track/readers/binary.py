@@ -30,8 +30,8 @@ SYNC: Final = b"\xb5\x62"
 LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
 """Lengths in bytes of NAV-PVT (84: u-blox 7, 92: later), NAV-HPPOSLLH and NAV-COV; a request has the length 0."""
 _BEGIN: Final = re.compile(SYNC + rb"(\x01[\x07\x14\x36])")
-_DAMAGED: Final = "messages with a wrong checksum or cut short"
-_NO_TIME: Final = "messages without a valid time"
+_DAMAGED: Final = Message("messages with a wrong checksum or cut short")
+_NO_TIME: Final = Message("messages without a valid time")
 _COUNTS: Final = (_DAMAGED, _NO_TIME)
 _NO_FIX: Final = (0, 5)  # none; time only
 CARRIER_SOLUTIONS: Final[dict[int, Solution]] = {0: "code", 1: "float", 2: "fixed"}
@@ -61,7 +61,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
         allowed = Message("messages NAV-PVT with right checksums and valid times")
         action = Message("Switch NAV-PVT on in the receiver, or copy the file again.")
         raise track_error("empty_file", name, allowed, action, value=counted)
-    counts["NMEA sentences next to messages NAV-PVT"] = len(SENTENCE.findall(data))
+    counts[Message("NMEA sentences next to messages NAV-PVT")] = len(SENTENCE.findall(data))
     table = np.array([_epoch_row(epoch) for epoch in epochs])
     start = epochs[0].moment
     return Recording(
@@ -91,7 +91,7 @@ def has_places(data: bytes) -> bool:
     return any(message.identity == "NAV-PVT" and _time_of_message(message) is not None for _, message in messages)
 
 
-def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
+def _epochs(data: bytes, counts: dict[Message, int]) -> list[_Epoch]:
     """Every NAV-PVT with a valid time, and the other messages of its time of week."""
     epochs: list[_Epoch] = []
     precise: dict[int, Any] = {}
@@ -112,7 +112,7 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
     return epochs
 
 
-def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
+def _messages(data: bytes, counts: dict[Message, int]) -> Iterator[tuple[int, Any]]:
     """Each message that is read, with its offset; damaged frames are added to `counts`."""
     from pyubx2 import VALNONE, UBXReader, calc_checksum
 
@@ -236,9 +236,9 @@ def read_fit(data: bytes, name: str) -> Recording:
         place_sd=None if np.isnan(accuracy).all() else place_sd,
         odometer=None if np.isnan(table[:, 4]).all() else table[:, 4],
         heights="above mean sea level, as the watch has them",
-        left_out={"records without a date": records.without_time},
+        left_out={Message("records without a date"): records.without_time},
         segment=np.array(records.segments, dtype=np.int64),
-        notes=(f"{extra} bytes outside of the FIT file are not read.",) if extra else (),
+        notes=(Message("{extra} bytes outside of the FIT file are not read.", extra=extra),) if extra else (),
     )
 
 

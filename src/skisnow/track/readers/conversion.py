@@ -78,7 +78,7 @@ _STRAIGHT: Final = 10.0
 
 def _checked_speed(
     recording: Recording, speed: FloatArray, time: FloatArray, place: FloatArray
-) -> tuple[FloatArray, tuple[str, ...]]:
+) -> tuple[FloatArray, tuple[Message, ...]]:
     """Speeds (n,) (m/s) that fit the places, and notes; all NaN if a device without a speed sensor wrote zeros.
 
     time: (n,) s. place: (n, 2) m.
@@ -96,7 +96,7 @@ def _checked_speed(
         return speed, ()
     if not np.any(speed > 0.0):
         return np.full(len(speed), np.nan), (
-            "All recorded speeds are 0, although the places move. They are estimated from the places.",
+            Message("All recorded speeds are 0, although the places move. They are estimated from the places."),
         )
     ratio = float(np.percentile((speed[begin] + speed[end])[moving] / 2.0 / by_places[moving], _STRAIGHT))
     if ratio > _OTHER_UNIT and recording.speed_kind in _KINDS:
@@ -186,9 +186,9 @@ def _require_in_range(recording: Recording) -> None:
         raise track_error("out_of_range", recording.name, allowed, action, place=place, column=column, value=value)
 
 
-BEFORE: Final = "points before the first fix"
-AFTER: Final = "points after the last fix"
-OUT_OF_ORDER: Final = "points without a fix whose time is not between the points with a fix around them"
+BEFORE: Final = Message("points before the first fix")
+AFTER: Final = Message("points after the last fix")
+OUT_OF_ORDER: Final = Message("points without a fix whose time is not between the points with a fix around them")
 _ARRAYS: Final = ("time", "place", "speed", "velocity", "place_sd", "speed_sd", "odometer", "fix", "solution",
                   "segment", "not_finite")  # fmt: skip
 

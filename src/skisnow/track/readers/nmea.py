@@ -39,9 +39,9 @@ YEARS: Final = (1900, 2200)
 """First and last year of a valid date; others are damage."""
 PLACES: Final = ("GGA", "GNS", "RMC", "GLL")
 """Sentences with a place, the best first: GGA and GNS have heights, GLL has neither height nor date."""
-NO_TIME: Final = "sentences without a time"
-OTHER_TALKER: Final = "places of other talkers at the same time"
-NO_PLACE: Final = "times without a sentence that has a place"
+NO_TIME: Final = Message("sentences without a time")
+OTHER_TALKER: Final = Message("places of other talkers at the same time")
+NO_PLACE: Final = Message("times without a sentence that has a place")
 _DAY, _HALF_A_DAY = 86400.0, 43200.0
 _RECENT: Final = 5
 """Epochs back to which a late sentence may belong."""
@@ -125,11 +125,11 @@ def read_nmea(data: bytes, name: str) -> Recording:
     Raises FieldDataError: no sentence GGA, GNS, GLL or RMC with a time and a right checksum, or without checksums, is
         in the file.
     """
-    counts: dict[str, int] = {WRONG_CHECKSUM: 0, NO_TIME: 0}
+    counts: dict[Message, int] = {WRONG_CHECKSUM: 0, NO_TIME: 0}
     epochs = _read_epochs(data, counts)
     fixed = [number for number, epoch in enumerate(epochs) if epoch.has_fix]
     if fixed:
-        counts["times before the first fix"] = sum(map(_has_place, epochs[: fixed[0]]))
+        counts[Message("times before the first fix")] = sum(map(_has_place, epochs[: fixed[0]]))
         epochs = epochs[fixed[0] :]
     if not any(map(_has_place, epochs)):
         allowed = Message("sentences GGA, GNS, GLL or RMC with times, and with right checksums or none")
@@ -171,7 +171,7 @@ def _has_place(epoch: _Epoch) -> bool:
     return any(kind in PLACES for _, kind in epoch.seen)
 
 
-def _read_epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
+def _read_epochs(data: bytes, counts: dict[Message, int]) -> list[_Epoch]:
     """Sentences of a file grouped by their time of day; counts those without a time or of another talker."""
     epochs: list[_Epoch] = []
     for row, message, has_not_finite_cell in sentences(data, counts):
@@ -266,15 +266,15 @@ _READ: Final = re.compile(rb"[A-Z][A-Z0-9](GGA|GNS|GLL|RMC|VTG|GST|ZDA)")
 SENTENCE: Final = re.compile(rb"\$[A-Z]{2}(GGA|GNS|GLL|RMC|VTG|GST|ZDA),")
 LONGEST: Final = 1_000
 """Maximum bytes of a sentence: NMEA allows 82, receivers write somewhat more."""
-WRONG_CHECKSUM: Final = "sentences with a wrong checksum"
-NO_CHECKSUM: Final = "sentences without a checksum, next to others with one"
-UNREADABLE: Final = "sentences with a cell that cannot be read"
+WRONG_CHECKSUM: Final = Message("sentences with a wrong checksum")
+NO_CHECKSUM: Final = Message("sentences without a checksum, next to others with one")
+UNREADABLE: Final = Message("sentences with a cell that cannot be read")
 _PIECE: Final = re.compile(rb"\$([A-Z][A-Z0-9]{2,9}),([\x20-\x23\x25-\x7e]*)")
 _CHECKSUM: Final = re.compile(r"[0-9A-Fa-f]{2}")
 _LINE_END: Final = re.compile(rb"\r\n|\r|\n")
 
 
-def sentences(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any, bool]]:
+def sentences(data: bytes, counts: dict[Message, int]) -> Iterator[tuple[int, Any, bool]]:
     """Row in the file, decoded sentence, and whether a cell was `nan` or `inf`; rejected sentences are counted."""
     from pynmeagps import calc_checksum
 

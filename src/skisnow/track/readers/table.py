@@ -180,7 +180,7 @@ class _Table:
         absent = np.full(len(self.cells.rows), np.nan)
         return np.column_stack([self.numbers(name) if name in self.columns else absent for name in names])
 
-    def time(self) -> tuple[FloatArray, datetime | None, str | None]:
+    def time(self) -> tuple[FloatArray, datetime | None, Message | None]:
         """Seconds, the moment of the first row if the column has dates, and a note on how it was read."""
         name = next(column for column in TIMES if column in self.columns)
         cells = self.column(name)

@@ -166,7 +166,7 @@ LONGEST_STEP: Final = 2e-4
 """Steps between points up to this are days, 17 s; as seconds they would be 5,000 points a second."""
 
 
-def convert_serial_dates(values: FloatArray) -> tuple[FloatArray, datetime | None, str | None]:
+def convert_serial_dates(values: FloatArray) -> tuple[FloatArray, datetime | None, Message | None]:
     """Seconds, the moment of the first value if the numbers are dates, and a note; numbers of seconds stay.
 
     values: (n,), numbers in a column of times.
@@ -178,11 +178,13 @@ def convert_serial_dates(values: FloatArray) -> tuple[FloatArray, datetime | Non
     seconds = np.round(DAY * (values - values[0]), 3)
     if np.all((values >= DATES[0]) & (values <= DATES[1])):
         start = EPOCH + timedelta(milliseconds=round(float(values[0]) * DAY * 1000.0))
-        note = (
-            f"Times are read as serial numbers of a spreadsheet, in days since {EPOCH:%Y-%m-%d}. With the date system "
-            f"1904 they are {YEARS_1904} days later."
+        note = Message(
+            "Times are read as serial numbers of a spreadsheet, in days since {epoch:%Y-%m-%d}. With the date system "
+            "1904 they are {days} days later.",
+            epoch=EPOCH,
+            days=YEARS_1904,
         )
         return seconds, start, note
     if np.all((values >= 0.0) & (values < 2.0)):
-        return seconds + round(float(values[0]) * DAY, 3), None, "Times are read as fractions of a day."
+        return seconds + round(float(values[0]) * DAY, 3), None, Message("Times are read as fractions of a day.")
     return values, None, None
