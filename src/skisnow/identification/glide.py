@@ -117,9 +117,10 @@ class Glide:
     def rates(self, line: SlopeLine, piece: IntArray, x: FloatArray, speed: FloatArray) -> FloatArray:
         """Rates of x (m/s), arc length (m/s) and speed (m/s²), shape (3, k); the normal force is at least 0."""
         sine, cosine, curvature = line.at(piece, x)
-        pressed = np.maximum(self.gravity * cosine + curvature * speed**2, 0.0)
+        squared = speed**2
+        pressed = np.maximum(self.gravity * cosine + curvature * squared, 0.0)
         friction = (self.friction + self.friction_by_speed * speed) * pressed
-        return np.stack([speed * cosine, speed, self.gravity * sine - friction - self.drag_per_mass * speed**2])
+        return np.array([speed * cosine, speed, self.gravity * sine - friction - self.drag_per_mass * squared])
 
 
 def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
@@ -177,7 +178,7 @@ def _step_on(
         shorter = _share(state[1], moved[1], h * state[2], h * moved[2], end)
         share = np.where(passes, shorter, 1.0)
         again = _runge_kutta(line, glide, piece, state, share * h)
-        at_end = np.stack([line.x[piece + 1], end, again[2]])
+        at_end = np.array([line.x[piece + 1], end, again[2]])
         moved = np.where(passes, at_end, moved)
         piece = np.minimum(piece + passes, len(line.arc_length) - 2)
     return moved, piece, share
@@ -195,7 +196,7 @@ def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArr
     fourth = rates(state + h * third)
     moved = state + h / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
     moved[2] = np.maximum(moved[2], 0.0)
-    return np.where(moved[1] < state[1], np.stack([state[0], state[1], moved[2]]), moved)
+    return np.where(moved[1] < state[1], np.array([state[0], state[1], moved[2]]), moved)
 
 
 def _photo_cell_times(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
