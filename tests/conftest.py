@@ -119,8 +119,12 @@ def undrawn() -> Iterator[None]:
 @contextmanager
 def without_figures() -> Iterator[None]:
     """An empty picture, each another, in place of every figure: a figure takes a second, and these tests read words."""
-    from skisnow.report.figures.drawing import Picture
+    from matplotlib.figure import Figure
 
+    from skisnow.report.figures.drawing import Picture
+    from skisnow.report.run import drawings
+
+    blank = {name: each._replace(draw=lambda _: Figure()) for name, each in drawings._FIGURES.items()}
     number = count()
 
     def empty(drawing: "Drawing") -> Picture:
@@ -128,7 +132,7 @@ def without_figures() -> Iterator[None]:
         each = svg.encode()
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each)
 
-    with patch("skisnow.report.figures.drawing.render", empty):
+    with patch("skisnow.report.figures.drawing.render", empty), patch.dict(drawings._FIGURES, blank):
         yield
 
 

@@ -111,7 +111,6 @@ def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -
     assert [number in headline for number in ("6.00", "4.20", "7.80")] == [True] * 3
 
 
-@pytest.mark.usefixtures("undrawn")
 def test_boots_that_are_moved_have_their_angles_and_forces(run: Run, html: str, tmp_path: Path) -> None:
     """The left ski goes from flat to 30 degrees, the right one stays; they are not edged at the scenario's angle."""
     assert run.boots is not None
@@ -120,7 +119,8 @@ def test_boots_that_are_moved_have_their_angles_and_forces(run: Run, html: str, 
     off = np.stack([0.0 * angle, np.sin(angle), np.cos(angle)], axis=2)
     axes = np.stack([np.broadcast_to([1.0, 0.0, 0.0], across.shape), across, off], axis=2)
     moved = replace(run, boots=replace(run.boots, axes=axes), boots_by="moved by edges.csv")
-    page = write_run(moved, tmp_path, summary=summary_of(run)).read_text(encoding="utf-8")
+    with without_figures():
+        page = write_run(moved, tmp_path, summary=summary_of(run)).read_text(encoding="utf-8")
     assert "0° to 30°" in page
     assert "edge angle 30.0°" in html
     assert "edge angle 30.0°" not in page
