@@ -37,6 +37,11 @@ ENTRY = (
 
 
 @pytest.fixture
+def place(empty_file: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copy(empty_file, tmp_path / "store.sqlite3"))
+
+
+@pytest.fixture
 def folder(tmp_path: Path) -> Path:
     return write(tmp_path / "Brenner 2012", FILES)
 
