@@ -232,6 +232,7 @@ def test_a_fault_is_reported(
     assert str(noted_errors[-1]) in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_interrupted_search_continues(tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch) -> None:
     straight_tracks.put(monkeypatch)
     track = straight_tracks.track(seed=1)

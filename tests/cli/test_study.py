@@ -26,7 +26,7 @@ elements = 300
 load_N = { from = 300, to = 1500, n = 8 }
 edge_angle_deg = { from = 10, to = 60, n = 8 }
 """
-SMALL = TEXT.replace("1500, n = 8", "1500, n = 2").replace("60, n = 8", "60, n = 3")
+SMALL = TEXT.replace("1500, n = 8", "1500, n = 2").replace("60, n = 8", "60, n = 3").replace("300\n[", "100\n[")
 POINTS = 8 * 8
 Printed = pytest.CaptureFixture[str]
 

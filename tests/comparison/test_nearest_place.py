@@ -43,7 +43,7 @@ def test_nearest_of_a_tangled_path_with_pieces_of_every_length(dimensions: int, 
     steps = random.normal(size=(60, dimensions)) * random.choice([1e-3, 0.1, 5.0, 80.0], size=(60, 1))
     path = np.cumsum(steps, axis=0)
     path = np.insert(path, [5, 20, 20], path[[5, 20, 20]], axis=0)  # standing still
-    points = path[random.integers(0, len(path), 200)] + far * random.normal(size=(200, dimensions))
+    points = path[random.integers(0, len(path), 60)] + far * random.normal(size=(60, dimensions))
     found = Path(path).nearest(points)
     expected = np.array([by_hand(point, path) for point in points])
     # both lose digits in differences of squares of numbers around 10³ m
@@ -60,7 +60,7 @@ def test_nearest_of_dense_paths_seen_aslant_from_far(dimensions: int) -> None:
     arc[:, 0], arc[:, 1] = np.cos(angle), np.sin(angle)
     path = 1000.0 * arc
     path[1000:] += 0.02 * random.standard_normal((2001, dimensions))
-    points = 500.0 * arc[random.integers(0, 3001, 20)]
+    points = 500.0 * arc[random.integers(0, 3001, 8)]
     found = Path(path).nearest(points)
     # both lose digits in differences of squares of numbers around 10³ m
     assert found.distance == pytest.approx([by_hand(point, path) for point in points], rel=1e-10)

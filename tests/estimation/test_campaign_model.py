@@ -300,16 +300,16 @@ def test_a_few_series_that_scatter_otherwise_are_outliers_and_no_class(loud: int
 
 @pytest.mark.parametrize("count", [1, 2, 10, 40])
 def test_series_of_one_scatter_stay_one_group(count: int) -> None:
-    for seed in range(30):
+    for seed in range(15):
         model = in_groups(mixed_series(1.0, count=count, seed=seed))
         assert model.grouped_by == "campaign"
         assert noisier_series_warning(model, ["P1"] * count) == ()
 
 
 def test_b_is_corrected_for_its_dilution() -> None:
-    """Thirty reference campaigns with a scatter of 8 %: least squares give 0.95, the correction 1."""
+    """Fifteen reference campaigns with a scatter of 8 %: least squares give 0.95, the correction 1."""
     raw, expected, corrected, covered = [], [], [], []
-    for seed in range(30):
+    for seed in range(15):
         drawn = reference_campaign(
             seed + 2000, noise=ReferenceNoise(depth_scatter=0.08, layering_sd=0.15, depths_grow=False)
         )

@@ -292,13 +292,13 @@ def test_number_of_tests_for_the_chosen_difference() -> None:
 
 
 def test_pairs_are_corrected_for_their_number() -> None:
-    """Against statsmodels; of equal sites some pair is below 0.05 in one campaign of twenty, 400 campaigns."""
+    """Against statsmodels; of equal sites some pair is below 0.05 in one campaign of twenty, 200 campaigns."""
     from statsmodels.stats.multitest import multipletests
 
     rng = np.random.default_rng(6)
     names = np.repeat(list("ABCDE"), 8).tolist()
     below = []
-    for _ in range(400):
+    for _ in range(200):
         rows = compare_groups(of(rng.normal(0.0, 0.3, 40), site=names), "site")
         below.append(min(row.p_holm for row in rows) < 0.05)
     assert [row.n_pairs for row in rows] == [10] * 10
@@ -312,7 +312,7 @@ def test_intervals_cover_the_ratio_of_equal_sites(sizes: tuple[int, ...]) -> Non
     rng = np.random.default_rng(7)
     names = [chr(65 + index) for index, size in enumerate(sizes) for _ in range(size)]
     covered = []
-    for _ in range(400):
+    for _ in range(200):
         rows = compare_groups(of(rng.normal(0.0, math.hypot(0.3, 0.05), len(names)), 0.05, site=names), "site")
         covered += [row.interval[0] <= 1.0 <= row.interval[1] for row in rows]
     assert 0.92 < np.mean(covered) < 0.98

@@ -113,7 +113,7 @@ def times_on_two_planes(first: float, second: float, mu: float, drag: float, sta
     return np.array([time(first, 6.0, s) if s <= edge else whole + time(second, behind, s - edge) for s in station])
 
 
-@pytest.mark.parametrize("spacing", [0.5, 2.0, 5.0])
+@pytest.mark.parametrize("spacing", [0.5, 5.0])
 def test_times_on_a_profile_of_two_planes(spacing: float) -> None:
     """In a hollow edge and over a slight crest: 0.1 ms for each metre between points, which round the edge."""
     stations = np.array([30.0, 60.0, 90.0, 120.0, 140.0])
@@ -128,7 +128,7 @@ def test_times_on_a_profile_of_two_planes(spacing: float) -> None:
 
 def test_bodies_together_pass_each_edge_for_themselves() -> None:
     """Three at once, each at its own time at every point: as each separately."""
-    line = slope_line(two_planes(math.radians(20.0), math.radians(10.0), 0.5), 12.3)
+    line = slope_line(two_planes(math.radians(20.0), math.radians(10.0), 1.0), 12.3)
     three = Glide(
         friction=np.array([0.0, 0.05, 0.1]), friction_by_speed=np.zeros(3), drag_per_mass=np.full(3, 0.003),
         speed=np.array([3.0, 6.0, 9.0]), gravity=np.full(3, 9.81),
