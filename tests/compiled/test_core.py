@@ -197,7 +197,7 @@ def test_without_sources_there_is_nothing_to_compare(tmp_path: Path) -> None:
         require_current("anything", tmp_path)
 
 
-EVERY = 0.01
+EVERY = 0.005
 """Processor time (s) between two signals."""
 BEATS = 3
 
@@ -229,7 +229,7 @@ def test_a_steady_carve_is_left_at_a_signal() -> None:
     try:
         signal.setitimer(signal.ITIMER_PROF, EVERY, EVERY)
         with pytest.raises(LeftError):
-            carve(ski, snow, edge_angle=math.radians(60), load=800.0, unloading_ratio=math.inf, elements=6_400)
+            carve(ski, snow, edge_angle=math.radians(60), load=800.0, unloading_ratio=math.inf, elements=2_400)
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, former)

@@ -15,7 +15,7 @@ from skisnow.dynamics import Dynamics, Ended, StepControl
 
 from .sledges import advanced, ahead, fixed, given, sledge
 
-DURATION: Final = 0.5
+DURATION: Final = 0.3
 CASES: Final = {
     "carves": {},
     "skids": {"snow__S_f_N_per_mm2": 0.1},
@@ -146,13 +146,13 @@ def test_mirror(changes: dict[str, float], edge_angle: float) -> None:
     assert other.velocity == pytest.approx(one.velocity * [1.0, -1.0, 1.0, -1.0, 1.0, -1.0], abs=1e-7)
     untwisted = np.where(np.arange(one.part("beam_dofs").shape[1]) % 3 == 2, -1.0, 1.0)
     assert other.part("beam_dofs") == pytest.approx(one.part("beam_dofs")[::-1] * untwisted, abs=1e-9)
-    assert abs(one.position[1] - 1.5) > 1.0  # it goes somewhere
+    assert abs(one.position[1] - 1.5) > 0.6  # it goes somewhere
 
 
 def test_straight_down_stays_straight() -> None:
     dynamics = stepped(sledge__edge_angle_deg=0.0, start__heading_deg=0.0, snow__H_V_N_per_mm3=0.03)
     assert abs(dynamics.position[1]) < 1e-12
-    assert dynamics.position[0] > 3.0
+    assert dynamics.position[0] > 1.9
 
 
 def test_start_elsewhere() -> None:

@@ -278,7 +278,7 @@ def test_left_and_right_mirror() -> None:
     """The first turn. With the fast method rounding decides where iterations end, and the ends differ by 0.2 mm."""
     ends = []
     for to_left in (True, False):
-        turn = tall(Skier(first_turn=0.3, first_to_left=to_left), duration_s=1.2, method="default")
+        turn = tall(Skier(first_turn=0.2, first_to_left=to_left), duration_s=0.8, method="default")
         ends.append(simulate(turn).place[-1])
     assert abs(ends[0][1]) > 0.02
     assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-9)

@@ -70,7 +70,7 @@ def test_the_regulator_settles(toes_in: float) -> None:
 
 
 def test_a_wedge_stops() -> None:
-    require_stop(straight(10.0, RACE, 5.5, **{"skier.steers": "wedge", "start.speed_m_per_s": 3.5}))
+    require_stop(straight(10.0, RACE, 4.2, **{"skier.steers": "wedge", "start.speed_m_per_s": 2.5}))
 
 
 @pytest.mark.slow

@@ -35,8 +35,8 @@ def closes(run: Run, changes: object) -> None:
 
 
 @pytest.mark.parametrize("contact", CONTACTS)
-def test_two_seconds(contact: str) -> None:
-    run = simulate(load_scenario("carved-46m", changes={**CONTACTS[contact], "run.duration_s": 2.0}))
+def test_one_second(contact: str) -> None:
+    run = simulate(load_scenario("carved-46m", changes={**CONTACTS[contact], "run.duration_s": 1.0}))
     closes(run, contact)
 
 
@@ -185,7 +185,7 @@ def circle(acts_on: ActsOn) -> Run:
         stance=0.3,
         friction=FRICTION,
         speed=SPEED,
-        duration=3.0,
+        duration=2.0,
     )
     return simulate(replace(given, contact=replace(given.contact, friction_acts_on=acts_on)))
 

@@ -43,7 +43,7 @@ def carve(seconds: float, laws: Laws | None = None) -> Run:
 
 @cache
 def usual_carve() -> Run:
-    return carve(0.3)
+    return carve(0.15)
 
 
 @dataclass(frozen=True)
@@ -88,13 +88,13 @@ def test_the_scenario_s_laws_from_python_give_its_run() -> None:
     sum of n such numbers is of the size of their root mean square, √n times that of one. The weight's work differs by
     as much times the weight.
     """
-    first = carve(0.2)
+    first = carve(0.1)
     weight = first.scenario.sledge.mass * first.scenario.gravity
     for laws, bound in (
         (Laws(penetration=HypoplasticPoint(H, 10.0)), 2e-8 * first.steps**0.5),
         (Laws(friction=own(), shear=ConstantShear(S)), 1e-9),
     ):
-        again = carve(0.2, laws)
+        again = carve(0.1, laws)
         assert np.abs(again.place - first.place).max() < bound
         assert again.steps == first.steps
         for name, energy in first.energies.items():
@@ -116,7 +116,7 @@ def test_the_scenario_s_laws_from_python_give_its_run() -> None:
 )
 def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     """To the end, elsewhere than the scenario's laws, and every joule is somewhere."""
-    run, usual = carve(0.3, laws), usual_carve()
+    run, usual = carve(0.15, laws), usual_carve()
     assert run.outcome == "finished"
     assert not run.has_residual_above(0.02)
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5
