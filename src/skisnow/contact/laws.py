@@ -111,8 +111,8 @@ class PressureCallback:
     def _require_finite(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
         """The law's values in this shape; `refuse` is called if one is not finite."""
         found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
-        bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
-        if bad.any():
+        if not np.isfinite(found).all():
+            bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
             self.refuse(
                 Message(
                     "{law!r} returns no finite value at a depth of {depth:.4g} mm",

@@ -166,16 +166,17 @@ def _slope(values: FloatArray, row: IntArray, column: IntArray, axis: int) -> Fl
     count, at = values.shape[axis], (row, column)[axis]
 
     def value(place: IntArray) -> FloatArray:
-        within = np.clip(place, 0, count - 1)
+        within = np.minimum(np.maximum(place, 0), count - 1)
         return np.asarray(values[within, column] if axis == 0 else values[row, within])
 
     if count == 1:
         return np.zeros(at.shape)
     if count == 2:
         return value(np.ones_like(at)) - value(np.zeros_like(at))
-    first = 0.5 * (4.0 * value(at + 1) - 3.0 * value(at) - value(at + 2))
-    last = 0.5 * (3.0 * value(at) - 4.0 * value(at - 1) + value(at - 2))
-    inside = 0.5 * (value(at + 1) - value(at - 1))
+    here, ahead, behind = value(at), value(at + 1), value(at - 1)
+    first = 0.5 * (4.0 * ahead - 3.0 * here - value(at + 2))
+    last = 0.5 * (3.0 * here - 4.0 * behind + value(at - 2))
+    inside = 0.5 * (ahead - behind)
     return np.where(at == 0, first, np.where(at == count - 1, last, inside))
 
 

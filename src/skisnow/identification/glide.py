@@ -114,8 +114,9 @@ class Glide:
     speed: FloatArray
     gravity: FloatArray
 
-    def rates(self, line: SlopeLine, piece: IntArray, x: FloatArray, speed: FloatArray) -> FloatArray:
-        """Rates of x (m/s), arc length (m/s) and speed (m/s²), shape (3, k); the normal force is at least 0."""
+    def rates(self, line: SlopeLine, piece: IntArray, state: FloatArray) -> FloatArray:
+        """Rates of x, arc length and speed, (3, k), in a state of these (m, m, m/s); the normal force is at least 0."""
+        x, _, speed = state
         sine, cosine, curvature = line.at(piece, x)
         squared = speed**2
         pressed = np.maximum(self.gravity * cosine + curvature * squared, 0.0)
@@ -186,14 +187,10 @@ def _step_on(
 
 def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray) -> FloatArray:
     """State after one step h (s) of the classical Runge-Kutta method; the speed stays at 0 or above."""
-
-    def rates(at: FloatArray) -> FloatArray:
-        return glide.rates(line, piece, at[0], at[2])
-
-    first = rates(state)
-    second = rates(state + 0.5 * h * first)
-    third = rates(state + 0.5 * h * second)
-    fourth = rates(state + h * third)
+    first = glide.rates(line, piece, state)
+    second = glide.rates(line, piece, state + 0.5 * h * first)
+    third = glide.rates(line, piece, state + 0.5 * h * second)
+    fourth = glide.rates(line, piece, state + h * third)
     moved = state + h / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
     moved[2] = np.maximum(moved[2], 0.0)
     return np.where(moved[1] < state[1], np.array([state[0], state[1], moved[2]]), moved)
