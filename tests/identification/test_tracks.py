@@ -310,8 +310,8 @@ def test_times_that_run_backwards_are_rejected(tmp_path: Path) -> None:
 
 
 def test_friction_of_a_simulated_run_is_found_again() -> None:
-    """One second of the carved turn, 2 mm of noise at 20 Hz: within four standard errors, themselves small."""
-    truth = {"friction.mu_0": 0.05, "start.speed_m_per_s": 7.3, "run.duration_s": 1.0}
+    """0.6 s of the carved turn, 2 mm of noise at 20 Hz: within four standard errors, themselves small."""
+    truth = {"friction.mu_0": 0.05, "start.speed_m_per_s": 7.3, "run.duration_s": 0.6}
     run = simulate(load_scenario("carved-46m", changes=truth))
     at = np.arange(0, len(run.time), 5)
     place = run.place[at] + 2e-3 * np.random.default_rng(1).standard_normal((len(at), 3))

@@ -196,7 +196,7 @@ def test_states_go_back_and_forth_and_instances_share_nothing(sledge: Fmu) -> No
 
 
 def test_the_state_of_a_sledge_as_bytes_serves_another_instance(sledge: Fmu) -> None:
-    """400 steps of 0.2 ms after that, with a push that begins later."""
+    """150 steps of 0.2 ms after that, with a push that begins later."""
     assert next(sledge.description.iter("CoSimulation")).attrib[f"canSerializeFMU{'sS'[sledge.fmi - 2]}tate"] == "true"
     instance, other = sledge.instance(), sledge.instance()
     untouched = instance.to_bytes(instance.state())
@@ -208,8 +208,8 @@ def test_the_state_of_a_sledge_as_bytes_serves_another_instance(sledge: Fmu) -> 
 
     def further(of: Instance) -> list[float]:
         rows = []
-        for number in range(400):
-            of.set({"push.force[2]": 50.0 * (number > 200)})
+        for number in range(150):
+            of.set({"push.force[2]": 50.0 * (number > 75)})
             of.step(1.05 + number * 2e-4, 2e-4)
             rows += [*of.get(["time", *SLEDGE_OUTPUTS])]
         return rows
@@ -302,7 +302,7 @@ def test_a_contact_has_the_bits_of_the_library(pair: Fmu) -> None:
     instance = pair.instance()
     dt, accepted = 2.5e-4, 0.0
     instance.begin(values=poses(pair, 0))
-    for number in range(400):
+    for number in range(150):
         values = poses(pair, number)
         instance.set(values)
         instance.step(number * dt, dt)

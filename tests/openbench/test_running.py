@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,13 @@ DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "plates-
 
 def quiet(_: str) -> None:
     pass
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _short_loop() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("openbench.calibration.STEPS", 10_000)
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -96,14 +96,14 @@ def test_a_measured_unloading_ratio_is_the_one_of_the_turn(analysis: Analysis, a
 
 def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> None:
     nominal = skisnow.load_scenario("carved-46m").with_(snow=analysis.snow("C", unloading_ratio=10.0))
-    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(nominal, PRIORS, 400, 1)]
+    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(nominal, PRIORS, 200, 1)]
     for prior in PRIORS:
         values = np.array([each[prior.key] for each in drawn])
         low, high = prior.ends(values_of(nominal)[prior.key] or 0.0)
-        # a Latin hypercube: one in each of 400 slices of the logarithm
+        # a Latin hypercube: one in each of 200 slices of the logarithm
         assert np.quantile(values, [0.0, 0.5, 1.0]) == pytest.approx([low, np.sqrt(low * high), high], rel=0.02)
     logs = np.log([[each[key] for key in (*MEASURED, *(prior.key for prior in PRIORS))] for each in drawn])
-    assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(7))) < 0.15  # 3 / √400
+    assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(7))) < 0.15  # 2 / √200
 
 
 def test_the_ensemble_is_computed_quickly_whatever_the_turn_asks_for(asked: list[Scenario]) -> None:
@@ -205,13 +205,13 @@ RATIO, WAY = "snow.unloading_ratio", "snow.shear_displacement_mm"
 
 
 def test_what_the_campaign_measured_is_drawn_from_its_interval(analysis: Analysis) -> None:
-    """Quantiles of a Latin hypercube: one of 400 slices each; all else is drawn as it was before, number by number."""
+    """Quantiles of a Latin hypercube: one of 200 slices each; all else is drawn as it was before, number by number."""
     plain = analysis.snow("C", unloading_ratio=9.0)
     snow = replace(plain, **MEASURED_HERE)
     turn = skisnow.load_scenario("carved-46m").with_(snow=plain)
     measured = turn.with_(snow=snow)
-    before = [values_of(each) for each in pipeline_turn.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
-    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(measured, inputs_with((), measured), 400, 1)]
+    before = [values_of(each) for each in pipeline_turn.drawn_scenarios(turn, inputs_with((), turn), 200, 1)]
+    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(measured, inputs_with((), measured), 200, 1)]
     for key, expected in ((RATIO, [6.0, 9.0, 16.0]), (WAY, [0.2, 0.25, 0.3125])):
         assert np.quantile([each[key] for each in drawn], [0.025, 0.5, 0.975]) == pytest.approx(expected, rel=0.01)
         assert [each[key] for each in before] != [each[key] for each in drawn]
@@ -240,7 +240,7 @@ def test_what_is_drawn_stays_inside_what_the_key_allows(analysis: Analysis) -> N
     wide: dict[str, Any] = {"unloading_ratio_interval": (1.0, 900.0), "shear_displacement_interval": (1e-5, 9e-3)}
     snow = replace(analysis.snow("C"), **{**MEASURED_HERE, **wide})
     turn = skisnow.load_scenario("carved-46m").with_(snow=snow)
-    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(turn, inputs_with((), turn), 400, 1)]
+    drawn = [values_of(each) for each in pipeline_turn.drawn_scenarios(turn, inputs_with((), turn), 200, 1)]
     for key, low, high in ((RATIO, 1.0, 1000.0), (WAY, 0.01, 10.0)):
         assert [min(each[key] for each in drawn), max(each[key] for each in drawn)] == [low, high]
 

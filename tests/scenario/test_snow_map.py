@@ -198,7 +198,7 @@ def test_contradictions(changes: dict[str, Any]) -> None:
 
 
 def test_a_run_on_equal_layers_is_that_on_one() -> None:
-    short = {"run.duration_s": 0.3, "solver.method": "fast"}
+    short = {"run.duration_s": 0.15, "solver.method": "fast"}
     one = load_scenario("carved-46m", changes=short)
     hardness = one.contact.snow.snow_hardness / 1e9
     layers = {"snow.layer_depth_mm": 2, "snow.lower_H_V_N_per_mm3": hardness}

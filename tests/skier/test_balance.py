@@ -23,7 +23,7 @@ def tall(skier: Skier | None = None, **changes: object) -> Scenario:
 
 
 class Held(BalancedSkier):
-    """At its speed by a force at the centre of mass, and pushed aside by another for 0.2 s from 4 s on."""
+    """At its speed by a force at the centre of mass, and pushed aside by another for 0.2 s from 3 s on."""
 
     aside = 0.0
     missing = 0.0
@@ -34,7 +34,7 @@ class Held(BalancedSkier):
         ahead = np.array([velocity[0], velocity[1], 0.0]) / max(speed, 1e-9)
         self.missing += 0.6 * (self.scenario.start.speed - speed)
         force = (150.0 * (self.scenario.start.speed - speed) + self.missing) * ahead
-        if 4.0 <= moment.time < 4.2:
+        if 3.0 <= moment.time < 3.2:
             force += self.aside * np.array([-ahead[1], ahead[0], 0.0])
         return force.tolist(), [0.0, 0.0, self.scenario.sledge.centre_of_mass[1]]
 
@@ -51,14 +51,14 @@ def steady(aside: float, duration: float, speed: float = 7.0, first_turn: float 
 
 def test_a_steady_turn_is_kept_and_a_push_of_50_N_is_survived() -> None:
     """tan Ψ of the lean from the pressure to the centre of mass is v²/(R g); pushed, it is there again 2 s later."""
-    run = steady(50.0, 6.0)
+    run = steady(50.0, 5.0)
     assert run.outcome == "finished"
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-3)
     balance = run.balance
-    before, after = (float(np.mean(balance.lean[(run.time > end - 0.3) & (run.time < end)])) for end in (4.0, 5.99))
+    before, after = (float(np.mean(balance.lean[(run.time > end - 0.3) & (run.time < end)])) for end in (3.0, 4.99))
     assert before > math.radians(13.0)
     assert after == pytest.approx(before, abs=math.radians(0.5))
-    last = (run.time > 5.0) & (run.time < 5.9)
+    last = (run.time > 4.0) & (run.time < 4.9)
     leans, balanced = (np.mean(np.tan(each[last])) for each in (balance.pressure_lean, balance.balanced_lean))
     assert leans == pytest.approx(balanced, rel=0.01)
     assert np.mean(balance.load[last].sum(axis=1)) == pytest.approx(75.0 * 9.81, rel=0.01)

@@ -45,7 +45,8 @@ def test_line_by_hand() -> None:
 
 
 def test_against_statsmodels_with_two_predictors() -> None:
-    from statsmodels.api import OLS, add_constant
+    from statsmodels.regression.linear_model import OLS
+    from statsmodels.tools.tools import add_constant
 
     rng = np.random.default_rng(7)
     X = rng.normal(size=(40, 2)) * [1.0, 300.0] + [5.0, 450.0]

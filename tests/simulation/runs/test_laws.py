@@ -176,7 +176,7 @@ def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
             heading_deg=180.0,
             speed=SPEED,
             duration=duration,
-            solver=Solver(tolerance=1e-8),
+            solver=Solver(tolerance=3e-8),
         )
     )
 
@@ -316,7 +316,7 @@ def of_strength(strength_along: Callable[[float], float] | None = None, seconds:
 
 
 def test_the_same_strength_everywhere_gives_the_same_bits() -> None:
-    short = of_strength(lambda _: 1.0, 0.3)
+    short = of_strength(lambda _: 1.0, 0.15)
     assert np.array_equal(of_strength().place[: len(short.time)], short.place)
 
 

@@ -71,7 +71,7 @@ def test_radius_of_the_arc(side: float) -> None:
 
     What is left is the edge's drift within its grip, of which 2 % are used, and the distance of the skis.
     """
-    run = circle(strength=5.0, side=side, solver=Solver(line_spacing=6e-3, fixed=True, step=1e-3), duration=1.5)
+    run = circle(strength=5.0, side=side, solver=Solver(line_spacing=6e-3, fixed=True, step=1e-3), duration=1.0)
     assert run.outcome == "finished"
     assert side * radius(run) == pytest.approx(RADIUS, rel=5e-3)
     assert run.speed[-1] == pytest.approx(SPEED, rel=1e-3)
