@@ -6,6 +6,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Final
 
 from ..._support.arrays import FloatArray
@@ -209,8 +210,7 @@ def named_unit(heading: str) -> str:
     ['kg', 'mm', 'cm', 'kg', '', '']
     """
     plain = " ".join(heading.split())
-    last = _LAST_WORD.fullmatch(plain)
-    if last:
+    if last := _LAST_WORD.fullmatch(plain):
         return (last[1] or "m").casefold()
     match = FORM.fullmatch(plain)
     unit = (match["in"] or match["per"] or match["of"] or "").strip() if match else ""
@@ -324,6 +324,7 @@ def heading_words(heading: str) -> str:
     return words.removesuffix(f" {unit}") if unit else words
 
 
+@lru_cache(maxsize=4096)
 def _rank(heading: str, column: str) -> float:
     """Likelihood, 0 to 1.25, that a heading means a column, by its synonyms and unit; 0 if it cannot."""
     unit = named_unit(heading) if unit_of_column(column) else ""
