@@ -105,8 +105,8 @@ def test_a_missing_module_of_skisnow_itself(name: str | None, missing: Any, caps
 MAKEFILE = Path(__file__).parents[2] / "Makefile"
 REDUCED = {
     "analyse": ["--resamples", "100"],
-    "turn": ["--runs", "3", "--workers", "1", "--set", "run.duration_s=0.2"],
-    "simulate": ["--set", "run.duration_s=0.2"],
+    "turn": ["--runs", "3", "--workers", "1", "--set", "run.duration_s=0.1"],
+    "simulate": ["--set", "run.duration_s=0.1"],
 }
 """Further options with which each command is quick."""
 
