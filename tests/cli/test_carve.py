@@ -101,7 +101,7 @@ def test_several_skis_share_one_answer_one_table_and_one_figure(tmp_path: Path, 
     assert head.split() == ["slalom", "giant-slalom", "giant-slalom/%"]
 
 
-@pytest.mark.parametrize("at_rest", [(), ("--at-rest",)])
+@pytest.mark.parametrize("at_rest", [(), pytest.param(("--at-rest",), marks=pytest.mark.slow)])
 def test_a_figure_in_german(tmp_path: Path, at_rest: tuple[str, ...]) -> None:
     figure = tmp_path / "carve.svg"
     assert main(["carve", *ASKED, *SNOW, *at_rest, "--figure", str(figure), "--language", "de"]) == 0

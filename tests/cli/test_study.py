@@ -48,7 +48,7 @@ def test_table_counts_and_progress(tmp_path: Path, capsys: Printed) -> None:
     assert capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("which", "suffix"), [("radius", "png"), ("grip", "pdf")])
+@pytest.mark.parametrize(("which", "suffix"), [("radius", "png"), pytest.param("grip", "pdf", marks=pytest.mark.slow)])
 def test_maps_are_drawn(which: str, suffix: str, tmp_path: Path) -> None:
     path, figure = study_in(tmp_path / "a", SMALL), tmp_path / f"map.{suffix}"
     assert main(["study", str(path), "--workers", "1", "--map", which, "--figure", str(figure)]) == 0
@@ -58,7 +58,7 @@ def test_maps_are_drawn(which: str, suffix: str, tmp_path: Path) -> None:
     assert figure.read_bytes() == first
 
 
-@pytest.mark.parametrize("which", ["radius", "grip"])
+@pytest.mark.parametrize("which", [pytest.param("radius", marks=pytest.mark.slow), "grip"])
 def test_a_map_in_german(which: str, tmp_path: Path) -> None:
     path, figure = study_in(tmp_path / "a", SMALL), tmp_path / "map.svg"
     words = ["--map", which, "--figure", str(figure), "--language", "de"]

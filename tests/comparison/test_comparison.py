@@ -277,7 +277,7 @@ def test_tracks_that_have_one_moment_in_common_are_compared_there() -> None:
 
 
 def test_an_arc_of_one_radius_has_an_uncertain_heading(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skisnow.comparison.alignment.PLACES", 512)
+    monkeypatch.setattr("skisnow.comparison.alignment.PLACES", 256)
     angle = np.linspace(0.0, 0.8, 100)
     run = build_track(arc(20.0, angle), angle)
     noise = 0.05 * np.random.default_rng(2).normal(size=(100, 2))

@@ -28,6 +28,7 @@ def test_five_gates_are_passed_near_the_assumed_side_force(name: str, start: Sta
     assert outcome(simulate(case.scenario(start))) == "finished"
 
 
+@pytest.mark.slow
 def test_ankles_give_way_on_25_degrees_so_that_the_pressure_does_not_rock() -> None:
     """It stays within 0.1 m of the centre of mass along the skis, as rms in turns; with stiff ankles a skier falls."""
     scenario = replace(named("slalom 13 m, 25°"), gates=2).scenario(Start())

@@ -297,7 +297,7 @@ def test_two_processes_lose_nothing(state: str, place: Path, tmp_path: Path) -> 
 
         with Store.open(place) as store, writing(store.engine) as connection:
             downgrade(connection, "base")
-    own = [[f"{who} {number}" for number in range(3)] for who in ("first", "second")]
+    own = [[f"{who} {number}" for number in range(2)] for who in ("first", "second")]
     folders = [campaigns(tmp_path / names[0], [*names, "both a", "both b"]) for names in own]
     run_at_once(place, folders, tmp_path / "go")
     with Store.open(place, create=False) as store:

@@ -27,14 +27,14 @@ def turn(**changes: object) -> Scenario:
 
 @pytest.fixture(scope="module")
 def own() -> Run:
-    return simulate(turn(run__duration_s=0.3, run__output_ms=1.0))
+    return simulate(turn(run__duration_s=0.2, run__output_ms=1.0))
 
 
 def test_boots_driven_back_give_the_forces_of_the_run(own: Run, tmp_path: Path) -> None:
     """Once the start is over within a tenth of the hundredth that is asked; the file is read and run as any."""
     file = tmp_path / "boots.csv"
     write_boots(own, file)
-    driven = simulate(turn(run__duration_s=0.3, run__output_ms=1.0, boots__file=str(file)))
+    driven = simulate(turn(run__duration_s=0.2, run__output_ms=1.0, boots__file=str(file)))
     assert driven.outcome == "finished"
     assert own.boots is not None
     assert driven.place == pytest.approx(own.place, abs=1e-9)

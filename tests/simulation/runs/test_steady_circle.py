@@ -30,7 +30,7 @@ def circle(
     side: float = 1.0,
     centre_height: float = 0.0,
     solver: Solver | None = None,
-    duration: float = 2.0,
+    duration: float = 1.6,
     displacement: float = SHEAR_DISPLACEMENT,
 ) -> Run:
     """A circle to the left for side = 1, to the right for -1."""
@@ -128,7 +128,7 @@ def test_slips_above_the_limit(share: float) -> None:
     assert 1.0 < path_radius(run) / (share * RADIUS * square / SPEED**2) < 1.12
     shear = run.energies["shear"]
     half = len(run.time) // 2
-    assert shear[-1] - shear[half] > 4.0
+    assert shear[-1] - shear[half] > 3.0
 
 
 def test_a_tall_sledge_tips() -> None:
@@ -212,7 +212,7 @@ def straight(*, compaction: bool, unloading_ratio: float = 10.0) -> Run:
             friction=FRICTION,
             drag_area=DRAG_AREA,
             speed=STRAIGHT_SPEED,
-            duration=3.0,
+            duration=2.2,
         )
     )
 

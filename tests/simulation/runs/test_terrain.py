@@ -195,7 +195,7 @@ def test_energy_closes_in_a_hollow(edge_deg: float, heading_deg: float) -> None:
     """Into a bottom of 20 m radius: lines that crowded before the tips once made 20 % of the energy out of nothing."""
     x = np.linspace(-3.0, 12.0, 61)
     hollow = Profile(x, 20.0 - np.sqrt(400.0 - (x - 8.0) ** 2))
-    changes = {"run.duration_s": 0.8, "snow.H_V_N_per_mm3": 1.0, "sledge.edge_angle_deg": edge_deg}
+    changes = {"run.duration_s": 0.65, "snow.H_V_N_per_mm3": 1.0, "sledge.edge_angle_deg": edge_deg}
     given = load_scenario("carved-46m", changes=changes | {"start.heading_deg": heading_deg})
     run = simulate(replace(given, slope=hollow))
     assert run.outcome == "finished"
