@@ -40,9 +40,9 @@ def mirrored(changes: dict[str, float]) -> dict[str, float]:
 
 
 def test_a_carve_ends_alike_wherever_nodes_lie() -> None:
-    """Within the stated error of 7 mm after 5 s, a quarter of it after half; equal elements are 19 mm off after 5 s."""
-    ends = [simulated(**{"solver.elements": elements, "run.duration_s": 2.5}).place[-1] for elements in (28, 48)]
-    assert math.dist(*ends) < 7e-3 / 4.0
+    """Within the stated error of 7 mm after 5 s, less with the square of the time; equal elements are 19 mm off."""
+    ends = [simulated(**{"solver.elements": elements, "run.duration_s": 1.5}).place[-1] for elements in (28, 48)]
+    assert math.dist(*ends) < 7e-3 * (1.5 / 5.0) ** 2
 
 
 @pytest.mark.parametrize("changes", [CARVES, SKIDS], ids=["carves", "skids"])
@@ -309,10 +309,3 @@ def test_the_widening_tail_brakes() -> None:
     assert brake == pytest.approx(1.52, abs=0.02)
     assert brake / (total_mass(run.scenario) * GRAVITY) == pytest.approx(0.0018, abs=1e-4)
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)
-
-
-def test_half_the_step() -> None:
-    """Steps of 1 ms and 0.5 ms end within the method's error."""
-    fixed = {"solver.fixed": True, "run.duration_s": 0.3}
-    one, other = (turned(1.0, **fixed, **{"solver.step_ms": step}) for step in (1.0, 0.5))
-    assert other.place[-1] == pytest.approx(one.place[-1], abs=1e-3)
