@@ -1,26 +1,30 @@
 """A group's store on a PostgreSQL server does what the one in a file does, and tells no password."""
 
 import logging
+import sqlite3
 import subprocess
 import sys
 import traceback
 from contextlib import AbstractContextManager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import text
+from sqlalchemy import Engine, create_engine, make_url, text
 from tests.coded import raises
 from tests.present import present
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, Store, replay_journal, store_place
+from skisnow.campaign.store import server as server_module
 from skisnow.campaign.store.engine import database_errors, writing
 from skisnow.campaign.store.engine import reading as reading_of
 from skisnow.campaign.store.migrations import alembic_config, downgrade, upgrade
-from skisnow.campaign.store.schema import REVISION, metadata
+from skisnow.campaign.store.schema import APPLICATION_ID, MARK, REVISION, metadata
+from skisnow.campaign.store.server import _CONNECTING, _STATES, ServerAddress, broken_references, open_server, reason
 
 from .postgresql_server import PASSWORD, QUOTED, Server
 from .test_journal import campaign_with, reading
@@ -247,3 +251,121 @@ def test_what_is_missing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "psycopg", None)
     with raises(StoreError, "not_installed", name="psycopg"):
         Store.open("postgresql://ada@host/group")
+
+
+# Without a server: SQLite with PostgreSQL's functions
+
+ADDRESS = ServerAddress(make_url("postgresql+psycopg://ada:secret@host/group?connect_timeout=5"))
+
+
+class RefusalError(Exception):
+    """An error of the driver with its code, which may be inside another error."""
+
+    def __init__(self, sqlstate: str | None, said: str, orig: Exception | None = None) -> None:
+        super().__init__(said)
+        self.sqlstate, self.orig = sqlstate, orig
+
+
+def test_reasons_of_refusals() -> None:
+    for state, words in _STATES.items():
+        assert reason(RefusalError(None, "outer", RefusalError(state, "timed out")), ADDRESS) == words
+    for part, words in _CONNECTING:
+        assert [reason(RefusalError(state, f"x {part}"), ADDRESS) for state in (None, "08001", "57P01")] == [words] * 3
+        assert reason(RefusalError("22012", f"\n {part} secret...\nmore"), ADDRESS) == f"{part} ***"
+    assert reason(RefusalError(None, " \n"), ServerAddress(make_url("postgresql://host/group"))) == "RefusalError"
+
+
+class Cursor(sqlite3.Cursor):
+    """A cursor that notes what is set for the session."""
+
+    settings: dict[str, str] = {}  # noqa: RUF012
+
+    def execute(self, statement: str, parameters: Any = ()) -> "Cursor":
+        if statement.startswith("SELECT set_config"):
+            self.settings[parameters[0]] = parameters[1]
+            return self
+        super().execute(statement.replace("SHOW server_encoding", "SELECT encoding()"), parameters)
+        return self
+
+    def __enter__(self) -> "Cursor":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class Connected(sqlite3.Connection):
+    """A connection to a file that answers as PostgreSQL does."""
+
+    autocommit = False
+
+    def cursor(self, *_: object) -> Cursor:  # type: ignore[override]
+        return super().cursor(Cursor)
+
+
+@pytest.fixture
+def answers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, Any]:
+    """Answers of the functions, which a test may change; opened stores are on one file."""
+    told: dict[str, Any] = {"encoding": "UTF8", "comment": MARK, "locks": []}
+
+    def connect() -> sqlite3.Connection:
+        connection = sqlite3.connect(tmp_path / "file", factory=Connected)
+        connection.create_function("encoding", 0, lambda: told["encoding"])
+        connection.create_function("pg_advisory_xact_lock", 1, told["locks"].append)
+        connection.create_function("obj_description", 2, lambda name, _: told["comment"] if name == "campaign" else "")
+        for name, count in (("quote_ident", 1), ("to_regnamespace", 1), ("current_schema", 0)):
+            connection.create_function(name, count, lambda *_: "public")
+        connection.execute(
+            "CREATE TEMP VIEW pg_class AS SELECT name AS relname, name AS oid, 'public' AS relnamespace, "
+            "'r' AS relkind FROM main.sqlite_master WHERE type = 'table'"
+        )
+        return connection
+
+    def engine(_: object, **options: Any) -> Engine:
+        told["options"] = options
+        return create_engine("sqlite://", creator=connect)
+
+    monkeypatch.setattr(server_module, "create_engine", engine)
+    return told
+
+
+def test_a_database_becomes_a_store_once(answers: dict[str, Any]) -> None:
+    with raises(StoreError, "no_store", address=str(ADDRESS)):
+        open_server(ADDRESS, create=False, busy_timeout_s=2.5)
+    assert Cursor.settings["lock_timeout"] == "2500ms"
+    assert Cursor.settings["idle_in_transaction_session_timeout"] == "300s"
+    assert {name: answers["options"][name] for name in ("pool_pre_ping", "hide_parameters")} == dict.fromkeys(
+        ("pool_pre_ping", "hide_parameters"), True
+    )
+    assert answers["options"]["connect_args"]["tcp_user_timeout"] == "60000"
+    assert "connect_timeout" not in answers["options"]["connect_args"]
+    engine = open_server(ADDRESS, create=True, busy_timeout_s=1e-9)
+    assert (Cursor.settings["lock_timeout"], answers["locks"]) == ("1ms", [APPLICATION_ID])
+    open_server(ADDRESS, create=False, busy_timeout_s=1.0)
+    assert answers["locks"] == [APPLICATION_ID]
+    with engine.begin() as connection:
+        assert connection.execute(text("SELECT version_num FROM alembic_version")).scalar_one() == REVISION
+        assert list(broken_references(connection)) == []
+        for position in (1, 2):
+            values = {"sha256": "ab", "position": position, "data": b"a"}
+            connection.execute(metadata.tables["chunk"].insert().values(values))
+        assert list(broken_references(connection)) == [("chunk", "content", 2)]
+
+
+@pytest.mark.parametrize(
+    ("statement", "answer", "code"),
+    [
+        ("SELECT 1", {"encoding": "LATIN1"}, "wrong_encoding"),
+        ("SELECT 1", {"comment": "another"}, "other_database"),
+        ("DROP TABLE alembic_version", {}, "other_database"),
+        ("DELETE FROM alembic_version", {}, "damaged"),
+        ("UPDATE alembic_version SET version_num = '9999'", {}, "unknown_schema"),
+    ],
+)
+def test_other_databases(answers: dict[str, Any], statement: str, answer: dict[str, str], code: str) -> None:
+    with open_server(ADDRESS, create=True, busy_timeout_s=1.0).begin() as connection:
+        connection.execute(text(statement))
+    answers |= answer
+    place = {"place" if code == "unknown_schema" else "address": str(ADDRESS)}
+    with raises(StoreError, code, **place):
+        open_server(ADDRESS, create=True, busy_timeout_s=1.0)
