@@ -1,6 +1,6 @@
 """A small campaign without a problem, to be changed by each test."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -70,7 +70,7 @@ class SmallCampaign(dict[str, str]):
         return write_files(self.folder, {**self, **(further or {})})
 
     def check(self, further: Mapping[str, str | bytes] | None = None) -> tuple[Problem, ...]:
-        return check_campaign(self.written(further))
+        return require_sentences(check_campaign(self.written(further)))
 
     def errors(self, further: Mapping[str, str | bytes] | None = None) -> list[Problem]:
         return [problem for problem in self.check(further) if problem.severity == "error"]
@@ -80,6 +80,15 @@ class SmallCampaign(dict[str, str]):
 
     def replace(self, file: str, old: str, new: str) -> None:
         self[file] = self[file].replace(old, new)
+
+
+def require_sentences(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """The problems, each with a file's name, a range of allowed values and an action that is a sentence."""
+    every = tuple(problems)
+    for problem in every:
+        assert (" " in problem.code, problem.file != problem.code, problem.row != 0) == (False, True, True)
+        assert (str(problem.action)[-1], str(problem.allowed)[-1:] == ".") == (".", False), problem
+    return every
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes]) -> Path:

@@ -9,6 +9,8 @@ from skisnow.campaign import Problem
 from skisnow.campaign.caaml import OWN_NAMESPACE, read_caaml
 from skisnow.campaign.snow_pit import DepthTemperature, PlateValue, SnowPit
 
+from .conftest import require_sentences
+
 SNOWPILOT = """<?xml version="1.0" encoding="UTF-8"?>
 <SnowProfile xmlns="http://caaml.org/Schemas/SnowProfileIACS/v6.0.5" xmlns:gml="http://www.opengis.net/gml" gml:id="x">
  <timeRef><recordTime><TimeInstant><timePosition>2024-12-10T11:30:00</timePosition></TimeInstant></recordTime></timeRef>
@@ -152,7 +154,8 @@ def refusal(path: Path) -> Problem:
         read_caaml(path)
     (problem,) = refused.value.problems
     assert isinstance(problem, Problem)
-    return problem
+    assert (problem.code, problem.file) == ("unreadable_file", path.name)
+    return require_sentences([problem])[0]
 
 
 @pytest.mark.parametrize("version", ["6.0", "6.0.3", "6.0.5", "6.0.6"])

@@ -2,9 +2,12 @@
 column are errors with the result for both readings.
 """
 
+import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -13,6 +16,12 @@ from tests.present import present
 
 from skisnow import write_reference
 from skisnow.campaign import Campaign, Problem, check_campaign, read_campaign
+from skisnow.campaign.problems import QUALITY_FLAGS
+from skisnow.campaign.reading.campaign_files import FilesInMemory, RawFiles
+from skisnow.campaign.reading.headings import conversion
+from skisnow.campaign.snow_pit import LayerDensity, SnowLayer, SnowPit
+
+from ..conftest import SmallCampaign, require_sentences
 
 WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
 SHARED = Path(__file__).parents[3].parent / "shared"
@@ -388,3 +397,74 @@ def test_shared_case_reshaped_by_hand(write_campaign: WriteCampaign) -> None:
     assert [hardness["Hang oben 2"], hardness["Hang unten 6"]] == pytest.approx([1.424, 0.896], rel=1e-3)
     stress = {each["experiment"]: each["S_f_N_per_mm2"] for each in results["shear"]["experiments"]}
     assert stress["Hang oben S1"] == pytest.approx(0.159, abs=5e-4)
+
+
+SIZES = [
+    ("edge_angle_deg", "deg 1 0, ° 1 0, rad 57.29577951308232 0"),
+    ("load_N", "n 1 0, kg 9.80665 0, kp 9.80665 0, g 0.00980665 0, kn 1000 0, dan 10 0"),
+    ("depth_mm", "mm 1 0, cm 10 0, m 1000 0, dm 100 0, µm 0.001 0, um 0.001 0, in 25.4 0, inch 25.4 0"),
+    ("moment_Nm", "nm 1 0, ncm 0.01 0, nmm 0.001 0, knm 1000 0"),
+    (SNOW_DENSITY, "kg/m³ 1 0, g/l 1 0, g/cm³ 1000 0, kg/l 1000 0, t/m3 1000 0"),
+    ("snow_temperature_C", "°c 1 0, k 1 -273.15, °f 0.5555555555555556 -17.77777777777778"),
+]
+"""Factor and shift of each unit, by column."""
+
+
+@pytest.mark.parametrize(("column", "sizes"), SIZES)
+def test_sizes_of_all_units(column: str, sizes: str) -> None:
+    for size in sizes.split(", "):
+        unit, factor, shift = size.split()
+        found = present(conversion(unit.casefold(), column))
+        assert found.convert(np.array([2.0, 0.0])) == pytest.approx([2.0 * float(factor) + float(shift), float(shift)])
+        assert found.revert(2.0 * float(factor) + float(shift)) == pytest.approx(2.0)
+
+
+WEATHER = "SMET 1.1 ASCII\nstation_id = A\nnodata = -999\nfields = timestamp TA\n[DATA]\n2026-02-03T08:00 {}\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "place"),
+    [
+        ("s.SMET", WEATHER.format(270), None),
+        ("s.csv", "", ("campaign.toml", "weather.file", "s.csv")),
+        ("../s.smet", "", ("campaign.toml", "weather.file", "../s.smet")),
+        ("t.smet", WEATHER.format(270), ("campaign.toml", "weather.file", "t.smet")),
+        ("s.SMET", WEATHER.format("cold"), ("s.SMET", "TA", "cold")),
+    ],
+)
+def test_weather_files(small: SmallCampaign, name: str, file: str, place: tuple[str, ...] | None) -> None:
+    small["campaign.toml"] += f'[weather]\nfile = "{name}"\n'
+    errors = small.errors({"s.SMET": file})
+    assert [(each.file, each.column, each.value) for each in errors] == ([] if place is None else [place])
+    assert {each.code for each in errors} <= {"unreadable_file"}
+    if place is None:
+        assert present(small.read({"s.SMET": file}).weather).series.fields["TA"].tolist() == [270.0]
+
+
+@pytest.mark.parametrize(("failure", "value"), [((5, "told"), "told"), (("untold",), "untold"), ((), None)])
+def test_a_file_that_cannot_be_read(
+    failure: tuple[Any, ...], value: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    result = {"side_effect": OSError(*failure)} if failure else {"return_value": None}
+    monkeypatch.setattr(FilesInMemory, "read", Mock(**result))
+    files = RawFiles(FilesInMemory({}))
+    assert (files.read("shear.csv"), files.hashes, files.absent) == (None, {}, set())
+    (problem,) = require_sentences(files.problems)
+    assert (problem.code, problem.file) == ("unreadable_file", "shear.csv")
+    assert value in (None, problem.value)
+
+
+def test_representations_and_the_uncertainty_of_depths(small: SmallCampaign) -> None:
+    read = small.read()
+    assert read.depth_uncertainty == pytest.approx(1e-5 / 12**0.5)
+    assert replace(read, gauge_resolution=None).depth_uncertainty is None
+    numbers = {
+        "2 5 2 3 300 410.5 3 12.5 17 0.01 0": read,
+        "2 5 100 0 30 70.5 210.5 0.5 3.75": read.penetration,
+        "2 45 90 5.5 6 300 300 10 12.25": read.shear,
+        "3 300 410.5": read.density,
+        "3 12.5 17": read.drop_cone,
+        "1 2 0 150": SnowPit("", snow_height=1.5, layers=(SnowLayer(0),), densities=(LayerDensity(0, 1),) * 2),
+    }
+    assert [" ".join(re.findall(r"\d+\.?\d*", repr(table))) for table in numbers.values()] == list(numbers)
+    assert QUALITY_FLAGS["too_few_loads"].name == "too few loads"

@@ -427,3 +427,37 @@ def test_u_y_is_found_where_nothing_errs_and_the_interval_of_u_y_holds_its_media
     sites = [site for site, flag in zip(present(analysis.campaign.penetration).site, flagged, strict=True) if flag]
     assert set(sites) == {"site B"}
     assert len(sites) > 20  # of 30 series with seven depths, each of which grows by more than 1 % in e^(-1/3) = 72 %
+
+
+def test_all_numbers_of_one_seed(tmp_path: Path) -> None:
+    """Sums with weights from 1 to 2; the tolerance is more than one depth that is rounded the other way."""
+    drawn = reference_campaign(3, turning_angles=True, creep=True)
+    tests, shear = drawn.penetration, drawn.shear
+    unloading, turning = present(tests.unloading), present(shear.turning)
+    sums = {
+        5206042819000.0: drawn.snow_hardness, -0.0002076893733: drawn.seating_offset, 53.98197049: drawn.layering,
+        3.157825925: drawn.penetration_depth, 1300.332139: drawn.unloading_ratio,
+        0.04098053126: drawn.shear_displacement,
+        21059608.72: drawn.failure_shear_stress, 224.6829188: tests.edge_angle, 624776.1938: tests.load,
+        3.159143083: tests.penetration_depth, 3106177.787: tests.row, 0.7242676681: present(tests.depth_after),
+        119206.9576: unloading.first, 169578.2289: unloading.load, 1.559189362: unloading.penetration_depth,
+        876147.3583: unloading.row, 222.5392665: shear.edge_angle, 1.185951682: shear.penetration_depth,
+        40.5: shear.lever_arm, 3658.85271: shear.moment, 55953.40187: shear.snow_density, 49212.0: shear.row,
+        49140.83333: turning.first, 0.4923483995: turning.turning_angle, 10986.94306: turning.moment,
+        33139.30769: drawn.density.snow_density, 1426.666667: drawn.density.row,
+        1.967772449: drawn.drop_cone.drop_cone_depth, 8398.5: drawn.drop_cone.row,
+    }  # fmt: skip
+    weighted = [float(np.nansum(values * np.linspace(1.0, 2.0, values.size))) for values in sums.values()]
+    assert weighted == pytest.approx(list(sums), rel=1e-5)
+    write_reference(tmp_path / "all", seed=3, turning_angles=True, creep=True)
+    write_reference(tmp_path / "plain", seed=3)
+    of_all, of_plain = (
+        " ".join(re.findall(r"[-\d.]*\d", (tmp_path / name / "campaign.toml").read_text("utf-8").split("[[")[0]))
+        for name in ("all", "plain")
+    )
+    last = " 3 0.01 0.5 0.2 1 12 92 172 252 332 412 492"
+    plain = (
+        "3 2013 0.01 0 0.5 0.02 3 10 0.15 2 0.3 0.04-90 3 7 7 1 2 2 1 2 0.8 0.03 2 0.006 13 0.059 14 14 0.04-0.40 0.2 1"
+    )
+    assert of_plain == plain + last
+    assert of_all == plain + " 0.25 0.2 0.002 0.03" + last

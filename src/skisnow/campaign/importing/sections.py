@@ -347,7 +347,7 @@ class _Title:
 
     heading: str
     unit: str
-    values: Mapping[range, tuple[str, tuple[int, int]]]
+    values: Mapping[range, tuple[str, tuple[int, int] | None]]
 
 
 def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
@@ -372,7 +372,7 @@ def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
             heading or f"{sheet.name}:{row + 1}" + (f".{number}" if len(parts[0]) > 1 else ""),
             unit,
             {
-                part.own: (value, (row, place) if value == sheet.cell(row, place) else (-1, -1))
+                part.own: (value, (row, place) if value == sheet.cell(row, place) else None)
                 for part, value, place in zip(series, stored, places, strict=True)
             },
         )
