@@ -62,6 +62,7 @@ def test_heights_from_the_ground_become_depths(tmp_path: Path) -> None:
 def test_what_cannot_be_taken_is_named(tmp_path: Path, changes: dict[str, str], words: str) -> None:
     with pytest.raises(FieldDataError, match=rf"pit\.xml.*{words}"):
         read_caaml(foreign(tmp_path / "pit.xml", **changes))
+    assert refusal(foreign(tmp_path / "pit.xml", temperature="x" * 81)).value == "x" * 80
 
 
 BOMB = """<!DOCTYPE b [<!ENTITY a "lol"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]><SnowProfile>&b;</SnowProfile>"""

@@ -7,7 +7,7 @@ from tests.coded import raises
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.campaign import read_campaign
 from skisnow.campaign.importing.answers import Answers, read_template, save_template, saved_templates
-from skisnow.campaign.importing.folder import undo_import, write_import
+from skisnow.campaign.importing.folder import ToolText, parse_plate, parse_tool, undo_import, write_import
 from skisnow.campaign.importing.proposal import propose
 
 from .layouts import FILE, bytes_of, everyday, require_right
@@ -38,13 +38,23 @@ def test_changed_files_are_not_undone(tmp_path: Path) -> None:
     assert (tmp_path / "a/penetration.csv").exists()
 
 
+def test_tools_in_words() -> None:
+    for text, keys in (
+        ("cylinder r 5 x 80 cm", (("shape", '"cylinder"'), ("radius_mm", "50"), ("width_mm", "800"))),
+        ("disc 1,5 cm", (("shape", '"disc"'), ("diameter_mm", "15"))),
+        ("ski 200 mm x 6,2 cm", (("shape", '"ski"'), ("length_mm", "200"), ("width_mm", "62"))),
+    ):
+        assert [parse_tool(name, f" {text} ") for name in ("", "a")] == [ToolText(text, keys), ToolText("a", keys)]
+    assert parse_plate("", " 10 cm ") == ToolText("10 cm", (("length_mm", "100"),))
+
+
 def test_a_template_has_a_name(tmp_path: Path) -> None:
     """Saved once, it answers the next file; other answers under its name are an error, as names of other files are."""
     book = everyday()
     book["Hang oben"]["C6"] = None
     answers = Answers.of_options({"unit": ["Last=kg"]})
     campaign = propose(FILE, bytes_of(book), answers).files["campaign.toml"]
-    save_template("Gletscher 2026", campaign, folder=tmp_path)
+    assert save_template("Gletscher 2026", campaign, folder=tmp_path) == tmp_path / "Gletscher 2026.toml"
     save_template("Gletscher 2026", campaign, folder=tmp_path)
     assert list(saved_templates(tmp_path)) == ["Gletscher 2026"]
     require_right(propose(FILE, bytes_of(book), read_template("Gletscher 2026", named=tmp_path)))

@@ -94,6 +94,11 @@ def test_a_title_above_the_headings_is_passed_over(small: SmallCampaign, ends: s
     assert present(campaign.density).row.tolist() == [4, 5, 6]
 
 
+def test_the_likeliest_heading_gets_the_column() -> None:
+    for headings, likely in ((["Tiefe oben", "Tiefe"], "Tiefe"), (["Tiefe", "Tiefe [mm]"], "Tiefe [mm]")):
+        assert columns_by_synonym(PENETRATION, headings) == {likely: "depth_mm"}
+
+
 def test_many_alike_are_counted(small: SmallCampaign, capsys: pytest.CaptureFixture[str]) -> None:
     """Merged cells: a name only in the first row."""
     rows = [f"{'D1' if row == 2 else ''},Süd,{300 + row}" for row in range(2, 20)]

@@ -77,6 +77,8 @@ def test_loads_that_look_like_kg_are_rejected(write_campaign: WriteCampaign) -> 
     place = (problem.severity, problem.code, problem.file, problem.row, problem.column, problem.experiment)
     assert place == ("error", "unit_missing", "penetration.csv", 2, "load_N", "1")
     assert 'units."Last" = "kg"' in problem.action
+    unknown = problems(write_campaign(campaign(LOADS.replace("ski", "other"))))
+    assert {each.code for each in unknown} == {"unit_missing", "unknown_tool"}
     assert "Last [kg]" in problem.action
 
 

@@ -24,7 +24,7 @@ from skisnow.campaign.store import (
     replay_journal,
     sync,
 )
-from skisnow.campaign.store.export import MOST_PHOTO_BYTES, photo_of
+from skisnow.campaign.store.export import MOST_PHOTO_BYTES, photo_of, rows_of_file
 
 TOML = 'name = "x"\n[[tool]]\nname = "t"\nshape = "ski"\nlength_mm = 200\nwidth_mm = 62\n'
 PHOTO = b"\xff\xd8\xff" + bytes(range(256)) * 1000
@@ -48,6 +48,9 @@ def test_photo_and_position_are_exported_with_the_campaign(tmp_path: Path) -> No
         paths = {file.path for file in entered_files(store, id_)}
     with (tmp_path / "out" / "attachments.csv").open(encoding="utf-8", newline="") as file:
         photo, position = csv.DictReader(file)
+    data = (tmp_path / "out" / "attachments.csv").read_bytes()
+    assert rows_of_file(data, "penetration.csv", "1") == [photo, position]
+    assert rows_of_file(b"\xff", "penetration.csv", "1") == rows_of_file(data, "shear.csv", "1") == []
     assert (photo["table"], photo["test"], photo["who"]) == ("penetration.csv", "1", "Ada")
     assert (tmp_path / "out" / photo["photo"]).read_bytes() == PHOTO
     assert (position["latitude_deg"], position["longitude_deg"], position["accuracy_m"]) == ("47.25", "11.5", "6")

@@ -18,7 +18,7 @@ from skisnow._support.errors import StoreError
 from skisnow.campaign.problems import Problem
 from skisnow.campaign.store import Store, default_path, schema
 from skisnow.campaign.store import folder as store_folder
-from skisnow.campaign.store.folder import manifest_sha256
+from skisnow.campaign.store.folder import checked_bytes, manifest_sha256
 
 PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\nP1,A,ski,45,100,1.5\n"
 FILES = {
@@ -65,6 +65,10 @@ def test_export_gives_back_every_byte(folder: Path, place: Path, tmp_path: Path)
     with Store.open(place) as store:
         added = store.add(folder)
         exported = store.export(added.id, tmp_path / "new" / "out")
+        stored, data = store.contents(added.id, {"case.csv", "empty.csv", "no.csv"})
+        assert (stored.id, data) == (added.id, {"case.csv": b"lower", "empty.csv": b""})
+        with raises(StoreError, "damaged", path=stored.files[0].path):
+            checked_bytes(stored.files[0], [b"other"])
     assert contents(tmp_path / "new" / "out") == FILES == contents(folder)
     assert (added.n_files, added.n_bytes) == (len(FILES), sum(map(len, FILES.values())))
     assert exported.id == added.id

@@ -143,7 +143,7 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
         if not text and not rule.needed:
             return ""
         text, unit = text.replace("−", "-"), conversion or UnitConversion(column)
-        value = number(text, "," if "," in text and "." not in text else ".")
+        value = number(text, "," if "," in text else ".")
         if math.isnan(value) or bool(rule.outside(unit.convert(np.array([value])))[0]):
             ends = (rule.lowest, rule.highest)
             low, high = (unit.revert(limit) if math.isfinite(limit) else limit for limit in ends)
