@@ -38,7 +38,7 @@ COURSES = (
     Case("giant slalom 27 m, 17°", 17, 27.0, 6.5, 11.5, gates=5, ski="giant-slalom"),
 )
 """Courses that are not among the benchmark's cases, and by which no key was chosen."""
-HYBRID_STARTS = (40, 40, 12, 40, 40)
+HYBRID_STARTS = (40, 40, 12, 20, 40)
 """Disturbed starts of each case of turns that carve."""
 KEYS = (
     *("greatest_slip_deg", "least_slip_deg", "braking_per_s", "outer_share", "edge_rate_per_s", "leg_gain"),

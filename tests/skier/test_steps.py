@@ -238,17 +238,34 @@ def test_who_follows_the_plan_passes_the_apexes_from_beside_the_line_too() -> No
         assert np.all(np.abs(np.subtract(end, ends[0])) < [0.15, 0.03])
 
 
-def test_the_first_path_swings_to_the_other_side_but_not_where_it_bows_there_by_itself() -> None:
-    course, gravity = math.atan(1.9 * math.pi / 13.0), Gravity(9.5, 0.0)
-    forces = [
-        RecedingLine(HalfWaves(APEXES), APEXES).ahead(saw(place=(0.0, beside), speed=7.0, course=course), gravity).force
-        for beside in (0.0, -0.5)
-    ]
-    (now, later), (bows, bows_later) = (force[[0, 3]] for force in forces)
-    assert now > 1.5
-    assert later < 0.0
-    assert bows < 0.5
-    assert bows_later > 1.0
+def test_the_first_path_begins_straight() -> None:
+    """As the polynomial with place, course and no curvature of here, and those of the line at its apex."""
+    course, way, x = math.atan(1.9 * math.pi / 13.0), 6.5, 0.5 * STEP * 7.0
+    plan = RecedingLine(HalfWaves(APEXES), APEXES).ahead(
+        saw(place=(0.0, 0.0), speed=7.0, course=course), Gravity(9.5, 0.0)
+    )
+    rows = np.array(
+        [np.polynomial.Polynomial.basis(k).deriv(n)(at) for at in (0.0, way) for n in range(3) for k in range(6)]
+    )
+    bend = -1.9 * (math.pi / 13.0) ** 2 * math.cos(math.pi / 13.0 * 0.05)  # behind the apex by a step of the table
+    path = np.polynomial.Polynomial(np.linalg.solve(rows.reshape(6, 6), [0.0, math.tan(course), 0.0, 1.9, 0.0, bend]))
+    x *= math.cos(course)
+    assert plan.force[0] == pytest.approx(49.0 * path.deriv(2)(x) / (1.0 + path.deriv()(x) ** 2) ** 1.5, rel=1e-6)
+    assert abs(plan.force[0]) < 0.2
+
+
+@pytest.mark.parametrize(("heading", "faces"), [(31.0, 0.0), (-31.0, 0.0), (60.0, 25.0)])
+def test_skidded_turns_begin_with_skis_along_the_path_and_the_body_facing_down_the_slope(
+    heading: float, faces: float
+) -> None:
+    scenario = load_scenario("slalom-15deg", changes={"start.heading_deg": heading, "run.duration_s": 0.01})
+    skier = BalancedSkier(scenario.with_(method="fast"))
+    simulate(skier.scenario, boots=skier)
+    seen = skier.records[0].seen
+    assert seen.speed == pytest.approx(5.5, abs=1e-5)
+    assert np.degrees([seen.course, seen.heading, seen.body_heading]) == pytest.approx(
+        [heading, heading, faces], abs=1e-3
+    )
 
 
 def test_the_line_goes_on_behind_its_last_apex_from_side_to_side() -> None:

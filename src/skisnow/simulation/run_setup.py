@@ -202,15 +202,26 @@ def set_up(
     setup = laid_out(scenario, snow, laws=laws)
     setup.drive = _boot_drive(scenario, boots)
     setup.strength = None if strength_along is None else StrengthDrive(strength_along, setup.snow)
-    speed = scenario.start.speed
+    speed, hip = scenario.start.speed, 0.0
     if setup.drive is not None:
+        skier = _skier_of(setup.drive.control)
+        if skier is not None:  # the start's heading is that of the skis
+            hip = skier.hip
+            forward, left, up = setup.dynamics.rotation.T
+            ahead = math.cos(hip) * forward + math.sin(hip) * left
+            setup.dynamics.move_to(setup.dynamics.position, np.column_stack([ahead, np.cross(up, ahead), up]))
         if setup.drive.held:
             setup.dynamics.move_to(np.zeros(3), np.eye(3))
             speed = 0.0
         setup.drive.begin(setup.dynamics)
     setup.static_residual = setup.dynamics.find_equilibrium()
-    setup.dynamics.begin(np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    setup.dynamics.begin(np.array([speed * math.cos(hip), -speed * math.sin(hip), 0.0, 0.0, 0.0, 0.0]))
     return setup
+
+
+def _skier_of(boots: object) -> BalancedSkier | None:
+    """Skier that moves the boots, or to which their control passes its moments on."""
+    return next((each for each in (boots, getattr(boots, "skier", None)) if isinstance(each, BalancedSkier)), None)
 
 
 def no_start(setup: Setup) -> SolverError:
@@ -248,9 +259,7 @@ def _boot_drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | No
             raise ParameterError("the boots move by boots.file and by a function; give one of them").tag(
                 "contradiction"
             )
-        # the balance control of a skier, or a control that passes its moments on to one
-        balances = any(isinstance(control, BalancedSkier) for control in (boots, getattr(boots, "skier", None)))
-        if scenario.skier is not None and not balances:
+        if scenario.skier is not None and _skier_of(boots) is None:
             raise ParameterError(
                 "boots: the scenario has a skier, whose control moves the boots. Use the scenario without it, "
                 "scenario.with_(skier=None), or a BalancedSkier."

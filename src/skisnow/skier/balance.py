@@ -21,10 +21,10 @@ from .control import Balance, Controller, SkidControl, standing
 from .edges import Edges, ForceMap
 from .hybrid import CarvedLine
 from .plan import Gravity, HalfWaves, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of
-from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture, require_command
+from .posture import ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, Posture, require_command
 from .seen import Moment, Seen, seen_at
 from .wedge import WedgeControl
-from .yaw import Body
+from .yaw import FACES_DOWN, Body
 
 BuiltIn: TypeAlias = SkidControl | CarveControl | WedgeControl
 HELD_AT_START = 1.3
@@ -138,10 +138,15 @@ class BalancedSkier:
         return control
 
     def follow(self, line: Line, apexes: Sequence[tuple[float, float]]) -> BuiltIn:
-        """The control that follows a line with these apexes (m): skidding to a wanted speed, without one carving."""
+        """The control that follows a line with these apexes (m): skidding to a wanted speed, without one carving.
+
+        A skier who skids starts as between two turns, with the body facing down the slope.
+        """
         if self.skier.brakes_to:
             radius = self.scenario.ski.sidecut_radius_of_edge_line
-            carved = self.skier.carves
+            carved, heading = self.skier.carves, self.scenario.start.heading
+            facing = heading - max(-FACES_DOWN, min(FACES_DOWN, heading))
+            self.posture.numbers[HIP] = max(-self.skier.greatest_hip, min(self.skier.greatest_hip, facing - heading))
             return self.skidding(CarvedLine(line, apexes, radius) if carved else RecedingLine(line, apexes))
         return self._carve_control(Pursuit(line, self.skier.line_rate))
 
@@ -214,6 +219,11 @@ class BalancedSkier:
             nearing=nearing,
             falls_with=math.sqrt(max(0.0, nearing**2 + 2.0 * gravity * float(normal[2]) * clearance)),
         )
+
+    @property
+    def hip(self) -> float:
+        """Yaw of the body against the skis, to the left (rad)."""
+        return float(self.posture.numbers[HIP])
 
     @property
     def period(self) -> float:

@@ -28,10 +28,6 @@ TABLE_STEP: Final = 0.05
 """Step (m) of the table of a line (modelling assumption)."""
 JOINS: Final = 0.32
 """Share of the way between two apexes that is left at least to join the line (found by trial)."""
-SWING, MOST_SWING = 0.3, 0.8
-"""By how much the first path bends to the other side where it would bend to the turn's side at once, and at most over
-its way aside: there the snow turns skis and body together, before the skis pivot (found by trial: of eleven starts on
-snow stronger than assumed, ten pass two gates with 0.3 and with 0.45, five without)."""
 SETTLES: Final = 2.5
 """Rate (1/s) at which a side-slip comes to its speed, and its greatest deceleration (m/s²) (modelling assumption)."""
 CHANGES: Final = 0.5
@@ -173,7 +169,7 @@ class RecedingLine:
 
     The path to the apex is a polynomial of fifth order with place, course and planned curvature of now, and those of
     the line at the apex: the planned curvature is continuous, and nothing has to lead back to the line. The first one
-    swings to the other side, as if it came from a turn.
+    begins straight.
     """
 
     def __init__(self, line: Line, apexes: Sequence[tuple[float, float]]) -> None:
@@ -232,10 +228,8 @@ class RecedingLine:
         i = min(max(round((place - self._first) / TABLE_STEP), 0), len(self._bend) - 1)
         way = place - x
         a0, a1, end = y, math.tan(course) * way, self._bend_at(i) * way**2
-        if self._quintic is None:
-            swing = SWING * (7.0 * a1 - 10.0 * (aside - a0) - 0.5 * end)
-            a2 = max(0.0, min(swing, MOST_SWING * a1)) if a1 > 0.0 else min(0.0, max(swing, MOST_SWING * a1))
-        else:
+        a2 = 0.0
+        if self._quintic is not None:
             first, before, c = self._quintic
             u = (x - first) / before
             a2 = (c[2] + 3 * c[3] * u + 6 * c[4] * u**2 + 10 * c[5] * u**3) * (way / before) ** 2
