@@ -137,9 +137,11 @@ def test_scatter_solves_the_equation_of_paule_and_mandel() -> None:
     depth = truth * np.exp(rng.normal(0, 0.03, (40, 7))) + rng.normal(0, 1e-5, (40, 7))
     readings = pressed(tool, angle, depth, LOADS)
     uncertainty = ReadingUncertainty(1e-5, 0.5)
-    _, found = hardness_of_all_readings(readings, DEFINITIONS["H_V"], uncertainty)
+    value, found = hardness_of_all_readings(readings, DEFINITIONS["H_V"], uncertainty)
     logs = np.log(readings.load / readings.displaced_volume).reshape(40, 7)
     known = (0.5 / LOADS) ** 2 + ((readings.contact_area / readings.displaced_volume).reshape(40, 7) * 1e-5) ** 2
+    weights = 1.0 / (found[:, None] ** 2 + known)
+    np.testing.assert_allclose(value, np.exp(np.average(logs, axis=1, weights=weights)), rtol=1e-9)
 
     def excess(s2: float, x: np.ndarray, v: np.ndarray) -> float:
         w = 1 / (s2 + v)

@@ -56,7 +56,9 @@ def test_times_on_a_straight_line_at_constant_speed() -> None:
 
 def test_time_through_the_course_is_reported_where_both_ends_were_reached() -> None:
     assert "last gate  2 s" in repr(passages(WIDE, along_x(), {}))
-    assert "last gate" not in repr(passages(WIDE, along_x(seconds=3.0), {}))
+    missed = passages(WIDE, along_x(seconds=3.0), {})
+    assert "last gate" not in repr(missed)
+    assert present(missed.fault).words in [value for _, value in missed._repr_facts().rows]
 
 
 def test_a_side_is_left_or_right() -> None:

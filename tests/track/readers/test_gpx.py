@@ -233,6 +233,8 @@ def test_a_moment_needs_a_date_and_minutes_in_plain_figures(cell: str) -> None:
 
 def test_a_moment_without_a_zone_keeps_its_clock() -> None:
     assert moment("2022-12-27T15:51") == datetime(2022, 12, 27, 15, 51)
+    # of an offset with seconds 60 is no leap second
+    assert moment("2016-12-31T23:59:60+01:00:60") == datetime(2016, 12, 31, 22, 59, tzinfo=UTC)
 
 
 def straight(time: FloatArray) -> FloatArray:

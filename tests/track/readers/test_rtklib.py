@@ -47,10 +47,10 @@ def test_carrier_phase(tmp_path: Path) -> None:
 
 
 def test_standard_deviation_of_the_speed_and_velocities(tmp_path: Path) -> None:
-    """Along the velocity (0.6 north, -0.8 east), with the covariance as RTKLIB writes it: its root with its sign."""
+    """Along a slow velocity (0.6 north, -0.8 east), with the covariance as RTKLIB writes it: its root with its sign."""
     names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
     lines = LLH.splitlines()
-    rows = [f"{lines[3]} 3 -4 0 .03 .04 .5 .02 .1 .1", f"{lines[4]} 0 0 0 .03 .04 .5 -.02 0 0"]
+    rows = [f"{lines[3]} .3 -.4 0 .03 .04 .5 .02 .1 .1", f"{lines[4]} 0 0 0 .03 .04 .5 -.02 0 0"]
     track = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, *rows]), "a.pos")
     wanted = math.sqrt((0.6 * 0.03) ** 2 + (0.8 * 0.04) ** 2 - 2.0 * 0.48 * 0.02**2)
     np.testing.assert_allclose(present(track.speed_sd), [wanted, 0.5], rtol=1e-9)

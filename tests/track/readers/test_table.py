@@ -3,6 +3,7 @@
 import csv
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -28,8 +29,8 @@ def read(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named: o
 def refused(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named: object) -> str:
     with pytest.raises(FieldDataError) as caught:
         read(tmp_path, content, name, **named)
-    message = str(caught.value)
-    assert name in message
+    message, problems = str(caught.value), cast("tuple[Any, ...]", caught.value.problems)
+    assert {Path(each.file).name for each in problems} == {name}
     assert "allowed" in message
     return message
 
