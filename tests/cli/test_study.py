@@ -23,11 +23,11 @@ published = "race-piste"
 unloading_ratio = 10
 elements = 300
 [grid]
-load_N = { from = 300, to = 1500, n = 6 }
-edge_angle_deg = { from = 10, to = 60, n = 6 }
+load_N = { from = 300, to = 1500, n = 8 }
+edge_angle_deg = { from = 10, to = 60, n = 8 }
 """
-SMALL = TEXT.replace("1500, n = 6", "1500, n = 2").replace("60, n = 6", "60, n = 3").replace("300\n[", "100\n[")
-POINTS = 6 * 6
+SMALL = TEXT.replace("1500, n = 8", "1500, n = 2").replace("60, n = 8", "60, n = 3").replace("300\n[", "100\n[")
+POINTS = 8 * 8
 Printed = pytest.CaptureFixture[str]
 
 
